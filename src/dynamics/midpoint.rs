@@ -9,10 +9,9 @@
 //! with the potentials φ of the interval, which have no inertia, by Gauss's law.
 
 use crate::coordinates::{Configuration as Place, Interval, Scratch};
-use crate::dynamics::grid_tangent::GridTangent;
+use crate::dynamics::newton_matrix::NewtonMatrix;
 use crate::dynamics::resolution::{Balance, typical_energy};
-use crate::dynamics::solving::{Drive, MultigridUse, Newton, Solving};
-use crate::dynamics::step_matrix::StepMatrix;
+use crate::dynamics::solving::{Drive, Newton, Solving};
 use crate::dynamics::stepper::{Equations, Steps};
 use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::functional::{BlockMask, NodeBlocks, Order};
@@ -62,7 +61,10 @@ impl<'m> Stepper<'m> {
         let (mut here, next) = (map.instant(), map.instant());
         here.z.copy_from_slice(z);
         map.place(&mut here);
-        let matrix = step_matrix(model, solving);
+        let later = |model: &Model| direct_by(model, Newton::Modified, None);
+        let matrix = NewtonMatrix::new(model, solving, false, later, || {
+            direct_by(model, solving.newton, solving.backend)
+        });
         let mut equations = Midpoint {
             model,
             here,
@@ -85,7 +87,7 @@ impl<'m> Stepper<'m> {
             equations.lay_down();
         }
         let held = model.prescribed_coordinates();
-        Self::by(equations, (matrix, held), sizes, solving.newton)
+        Self::by(equations, matrix, held, sizes, solving.newton)
     }
 
     /// Prescribed motions have come to this time in ms.
@@ -358,18 +360,6 @@ impl Equations for Midpoint<'_> {
         // Those of the step stay in the list of both of its ends.
         let map = &self.model.action.map;
         &self.here.z[map.coordinates..map.unknowns()]
-    }
-}
-
-/// The matrix of a step: by its nodes where an iteration is wanted and nodes have all unknowns, otherwise factorised.
-pub(super) fn step_matrix(model: &Model, solving: Solving) -> StepMatrix {
-    let direct = |model: &Model| direct_by(model, Newton::Modified, None);
-    let is_wanted = solving.takes_grids(model);
-    let direct = (solving.multigrid != MultigridUse::Alone).then_some(direct as fn(&_) -> _);
-    let grids = is_wanted.then(|| GridTangent::new(model, direct, false));
-    match grids.flatten() {
-        Some(grids) => StepMatrix::Grids(Box::new(grids)),
-        None => StepMatrix::Direct(Box::new(direct_by(model, solving.newton, solving.backend))),
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! - `stepper`: Newton on the equations of one step; `midpoint`: those of the midpoint rule; `galerkin`: those of every other
 //!   method; `step_state`: the state from which a motion is resumed.
-//! - `step_matrix`, `step_solution`, `grid_tangent`, `tangent`: the matrix of a step, by factors or by multigrid.
+//! - `newton_matrix`, `grid_tangent`, `tangent`: the matrix of Newton's method, by factors or by multigrid.
 //! - `updates`, `contraction`: updates of an iteration, with kept factors, and how they shrink; `solving`: settings of method and solution.
 //! - `simulate`, `discrete_trajectory`, `observe`, `trajectory`, `part_columns`, `reactions`, `momenta`, `energies`, `kinetic`: step after step,
 //!   recorded and observed.
@@ -28,6 +28,7 @@ mod local_error;
 mod loop_rates;
 mod midpoint;
 mod momenta;
+mod newton_matrix;
 mod observe;
 mod part_columns;
 mod reactions;
@@ -36,8 +37,6 @@ mod simulate;
 mod singular_configurations;
 mod solving;
 mod state_space;
-mod step_matrix;
-mod step_solution;
 mod step_state;
 mod stepper;
 mod tangent;

@@ -4,11 +4,11 @@ use crate::coordinates::Configuration;
 use crate::dynamics::contraction::Verdict;
 use crate::dynamics::energies::Work;
 use crate::dynamics::error::StepError;
+use crate::dynamics::newton_matrix::NewtonMatrix;
 use crate::dynamics::resolution::{Balance, turned};
 use crate::dynamics::singular_configurations;
 use crate::dynamics::singular_configurations::BeyondLaw;
 use crate::dynamics::solving::{Drive, Newton};
-use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::step_state::{StepState, StepperReport};
 use crate::dynamics::updates::Updates;
 use crate::functional::{NodeBlocks, Order};
@@ -48,7 +48,8 @@ impl<E: Equations> Steps<E> {
     /// Steps by these equations, with a matrix and a scale for each unknown; `held` are those with prescribed values.
     pub(super) fn by(
         equations: E,
-        (matrix, held): (StepMatrix, Vec<usize>),
+        matrix: NewtonMatrix,
+        held: Vec<usize>,
         scales: Vec<f64>,
         newton: Newton,
     ) -> Self {
@@ -271,7 +272,7 @@ impl<E: Equations> Steps<E> {
         stop::check().map_err(|stopped| self.stopped(h, stopped))
     }
 
-    pub(super) fn stopped(&mut self, step: f64, Stopped(status): Stopped) -> StepError {
+    fn stopped(&mut self, step: f64, Stopped(status): Stopped) -> StepError {
         self.equations.restore();
         let time = self.equations.time();
         StepError::Stopped { time, step, status }
@@ -365,6 +366,93 @@ impl<E: Equations> Steps<E> {
 
     fn muscle_name(&self, muscle: usize) -> String {
         self.equations.model().system.muscles[muscle].name.clone()
+    }
+}
+
+impl<E: Equations> Steps<E> {
+    /// Takes the tangent evaluated last, and factorises it where it is solved so.
+    fn factor(&mut self, h: f64) -> Result<(), StepError> {
+        let began = Instant::now();
+        let values = self.equations.values();
+        let done = stop::heed(|is_over| self.updates.factor_unless(values, is_over));
+        self.report.factorisation += began.elapsed().as_secs_f64();
+        let is_kept = self.updates.matrix.is_kept() && done == Ok(Ok(()));
+        self.factored = is_kept.then_some(h);
+        let done = done.map_err(|stopped| self.stopped(h, stopped))?;
+        if self.updates.matrix.direct().is_some() {
+            self.report.factorisations += 1;
+        }
+        done.map_err(|singular| {
+            self.equations.restore();
+            let [start, _] = self.equations.ends();
+            StepError::Singular {
+                time: self.equations.time(),
+                step: h,
+                name: self.equations.unknown_name(singular.column),
+                redundant: self.equations.model().redundant_constraints(&start.z),
+            }
+        })
+    }
+
+    /// Solves for an update, with the whole tangent where a new factor leaves out too much; returns its size relative to the
+    /// scales, which is no number where there is no update.
+    fn solve(&mut self, h: f64, is_fresh: bool) -> Result<f64, StepError> {
+        let size = match self.solve_once(h)? {
+            Some(size) => size,
+            None if self.fall_back() => {
+                self.report.fallbacks += 1;
+                self.evaluate(Order::Hessian, h);
+                self.factor(h)?;
+                self.solve_once(h)?.unwrap_or(f64::NAN)
+            }
+            None => {
+                self.residual.fill(f64::NAN);
+                return Ok(f64::NAN);
+            }
+        };
+        if !(is_fresh && self.updates.leave_out_much(&self.residual, size)) {
+            return Ok(size);
+        }
+        self.evaluate(Order::Hessian, h);
+        self.updates.make_exact();
+        self.factor(h)?;
+        Ok(self.solve_once(h)?.unwrap_or(f64::NAN))
+    }
+
+    fn fall_back(&mut self) -> bool {
+        let model = self.equations.model();
+        self.updates.matrix.fall_back_with_room(model)
+    }
+
+    /// Solves for an update; `None` where the iteration does not converge.
+    fn solve_once(&mut self, h: f64) -> Result<Option<f64>, StepError> {
+        let began = Instant::now();
+        let solved = stop::heed(|is_over| self.updates.solve(&mut self.residual, is_over));
+        self.report.solution += began.elapsed().as_secs_f64();
+        self.count();
+        let solved = solved.map_err(|stopped| self.stopped(h, stopped))?;
+        Ok(solved.ok())
+    }
+
+    /// Takes in the counts of the iterations.
+    fn count(&mut self) {
+        if let Some(grids) = self.updates.matrix.grids_mut() {
+            self.report.multigrid.add(grids.counted());
+        }
+    }
+
+    /// Brings potentials that are far from Gauss's law to it before anything moves; returns true if it did so.
+    fn place_potentials(&mut self, h: f64) -> Result<bool, StepError> {
+        let Some(grids) = self.updates.matrix.grids_mut() else {
+            return Ok(false);
+        };
+        let update = stop::heed(|is_over| grids.potentials_first(&self.residual, is_over));
+        self.count();
+        let update = update.map_err(|stopped| self.stopped(h, stopped))?;
+        if let Some(update) = &update {
+            self.equations.update(update);
+        }
+        Ok(update.is_some())
     }
 }
 

@@ -6,8 +6,8 @@
 //! were made, the combination of steps is found whose linearised update is least (D. G. Anderson, J. ACM 12, 1965).
 
 use crate::dynamics::contraction::{Contraction, Verdict};
+use crate::dynamics::newton_matrix::NewtonMatrix;
 use crate::dynamics::solving::Newton;
-use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::step_state::TangentState;
 use crate::dynamics::tangent::Tangent;
 use crate::math::{IsOver, Stopped};
@@ -23,7 +23,7 @@ const LEFT_OUT: f64 = 0.3;
 /// Solves for updates.
 #[derive(Debug)]
 pub(super) struct Updates {
-    pub(super) matrix: StepMatrix,
+    pub(super) matrix: NewtonMatrix,
     newton: Newton,
     anderson: Anderson,
     /// Size of each unknown; infinite where it says nothing about convergence.
@@ -32,7 +32,7 @@ pub(super) struct Updates {
 
 impl Updates {
     /// With a matrix and a scale for each unknown.
-    pub(super) fn new(matrix: StepMatrix, scales: Vec<f64>, newton: Newton) -> Self {
+    pub(super) fn new(matrix: NewtonMatrix, scales: Vec<f64>, newton: Newton) -> Self {
         Self {
             matrix,
             newton,
@@ -93,8 +93,8 @@ impl Updates {
     /// Before the first update of an attempt.
     pub(super) fn contraction(&self) -> Contraction {
         match &self.matrix {
-            StepMatrix::Direct(_) => Contraction::new(self.newton),
-            StepMatrix::Grids(_) => Contraction::of_cheap_tangents(self.newton),
+            NewtonMatrix::Direct(_) => Contraction::new(self.newton),
+            NewtonMatrix::Grids(_) => Contraction::of_cheap_tangents(self.newton),
         }
     }
 
@@ -122,9 +122,9 @@ impl Updates {
         is_over: IsOver<'_>,
     ) -> Result<Result<f64, NoSolution>, Stopped> {
         match (&mut self.matrix, self.newton) {
-            (StepMatrix::Direct(tangent), Newton::Full) => tangent.solve(residual),
-            (StepMatrix::Direct(tangent), Newton::Modified) => tangent.solve_roughly(residual),
-            (StepMatrix::Grids(grids), _) => {
+            (NewtonMatrix::Direct(tangent), Newton::Full) => tangent.solve(residual),
+            (NewtonMatrix::Direct(tangent), Newton::Modified) => tangent.solve_roughly(residual),
+            (NewtonMatrix::Grids(grids), _) => {
                 if let Err(none) = grids.solve_for_update(residual, is_over)? {
                     return Ok(Err(none));
                 }

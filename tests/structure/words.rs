@@ -110,7 +110,7 @@ const PATHS: [(&str, &str); 53] = [
     ),
     (
         "dynamics/equilibrium/equilibrium",
-        "dynamics/equilibrium/result",
+        "dynamics/equilibrium/rest_state",
     ),
     (
         "dynamics/equilibrium/softest",

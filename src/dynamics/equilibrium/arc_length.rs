@@ -1,13 +1,14 @@
-//! Equilibria along the path of a growing load by arc length, past limit points, where the load falls again.
+//! Loads that grow along a path of equilibria, first the weights with the forces of the scene, then the voltages; and equilibria along such a path
+//! by arc length, past limit points, where the load falls again.
 //!
 //! With the rows R(y, f) of a state y under the fraction f of a load, K = ∂R/∂y and b = ∂R/∂f, the tangent of the
 //! path is K ẏ = −ḟ b. A step follows it by Δs and comes back to the path in the plane normal to it. The path has a
 //! limit point (pull-in) where ḟ = 0; where a pivot of K changes its sign elsewhere, it meets another path (buckling).
 
-use crate::dynamics::equilibrium::ramp::Ramp;
-use crate::dynamics::equilibrium::rest_state::{Instability, RestState};
+use crate::dynamics::equilibrium::rest_state::{Instability, Load, RestState};
 use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::singular_configurations::shortest;
+use crate::model::Role;
 use crate::stop;
 
 /// Limit of corrections in one step.
@@ -35,6 +36,70 @@ const FLAT: f64 = 1e-6;
 
 /// Least stretch of a muscle on a path: below it the path ends.
 const SHORTEST: f64 = 0.05;
+
+/// A load that grows, and the voltages when all of it acts.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ramp<'v> {
+    pub(super) load: Load,
+    pub(super) voltages: &'v [f64],
+}
+
+impl Ramp<'_> {
+    /// Lets a fraction of the weights act; returns the voltages of a fraction.
+    pub(super) fn apply(&self, statics: &mut Statics<'_>, fraction: f64) -> Vec<f64> {
+        let (weight, part) = match self.load {
+            Load::Forces => (fraction, 0.0),
+            Load::Voltages => (1.0, fraction),
+        };
+        statics.weight = weight;
+        let variables = &statics.model.variables;
+        let scaled = |(value, role)| {
+            if role == Role::Voltage {
+                value * part
+            } else {
+                value
+            }
+        };
+        variables.with_roles(self.voltages).map(scaled).collect()
+    }
+
+    /// Adds the derivative of the rows by the fraction, at the state evaluated last.
+    pub(super) fn add(&self, statics: &Statics<'_>, rows: &mut [f64]) {
+        match self.load {
+            Load::Forces => statics.add_weight(rows),
+            Load::Voltages => {
+                let variables = &statics.model.variables;
+                let change = variables.inputs_where(self.voltages, |role| role == Role::Voltage);
+                statics.add_load(&change, rows);
+            }
+        }
+    }
+
+    /// Derivative of the fraction by the part of the way at a fraction.
+    pub(super) fn slope(&self, fraction: f64) -> f64 {
+        match self.load {
+            Load::Forces => 1.0,
+            Load::Voltages => 0.5 / fraction,
+        }
+    }
+
+    /// Derivative of the state by the fraction, −K⁻¹ b, at the state evaluated and factorised last.
+    pub(super) fn response(&self, statics: &mut Statics<'_>) -> Vec<f64> {
+        let mut load = vec![0.0; statics.residual.len()];
+        self.add(statics, &mut load);
+        statics.solve(&mut load);
+        load.iter_mut().for_each(|v| *v = -*v);
+        load
+    }
+
+    /// The fraction at a part of the way that a path takes: forces of voltages grow with their squares.
+    pub(super) fn fraction(&self, part: f64) -> f64 {
+        match self.load {
+            Load::Forces => part,
+            Load::Voltages => part.sqrt(),
+        }
+    }
+}
 
 /// State at which an equilibrium is lost.
 #[derive(Clone, Debug, PartialEq)]

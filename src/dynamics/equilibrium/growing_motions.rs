@@ -5,7 +5,7 @@
 //! (K + τ B)⁻¹ B that belong to growing motions are beyond all others, and Arnoldi's method finds them first.
 
 use crate::dynamics::equilibrium::statics::Statics;
-use crate::dynamics::step_matrix::StepMatrix;
+use crate::dynamics::newton_matrix::NewtonMatrix;
 use crate::math::{Random, Vector};
 use crate::model::Role;
 use crate::stop;
@@ -26,6 +26,36 @@ const ROUNDING: f64 = 1e-12;
 const ROTATIONS: usize = 10_000;
 
 impl Statics<'_> {
+    /// Number of directions in which a disturbance of the state evaluated and factorised last grows, potentials following; `None`
+    /// where the factorisation does not give them.
+    pub(super) fn unstable(&mut self) -> Option<usize> {
+        let falling = self.falling();
+        match (falling, &self.inertia.symmetric_part) {
+            (Some(0), _) | (_, None) => falling,
+            (_, Some(_)) => self.growing(),
+        }
+    }
+
+    /// Number of negative eigenvalues of the stiffness, of its symmetric part where it has no symmetry.
+    ///
+    /// The tangent is −h S with S the saddle of coordinates, multipliers and potentials: each multiplier has one negative
+    /// eigenvalue of S, potentials have those of their own block, what remains belongs to the coordinates.
+    pub(super) fn falling(&mut self) -> Option<usize> {
+        let part = self.inertia.symmetric_part.as_ref();
+        let tangent = part.or_else(|| self.matrix.direct())?;
+        let positive = tangent.negative_pivots()?;
+        let negative = self.residual.len() - positive;
+        let electric = match &mut self.inertia.electric {
+            Some(tangent) => {
+                tangent.factor(&self.values).ok()?;
+                let scalars = self.residual.len() - self.model.action.map.unknowns();
+                scalars - tangent.negative_pivots()?
+            }
+            None => 0,
+        };
+        negative.checked_sub(self.model.action.map.multipliers + electric)
+    }
+
     /// Number of eigenvalues with a negative real part of the stiffness evaluated and factorised last; `None` where they are not found.
     pub(super) fn growing(&mut self) -> Option<usize> {
         let sigma = self.sigma;
@@ -147,7 +177,7 @@ impl Statics<'_> {
     pub(super) fn add_load(&self, change: &[f64], rows: &mut [f64]) {
         let variables = &self.model.variables;
         let change = &variables.scalars(change);
-        if let StepMatrix::Grids(grids) = &self.matrix {
+        if let NewtonMatrix::Grids(grids) = &self.matrix {
             let (map, nodes) = (&self.model.action.map, grids.nodes());
             for (vector, s, sum) in nodes.of_vectors() {
                 map.pull_back_one(vector, &[], &(sum * change[s]), rows);

@@ -1,10 +1,12 @@
 //! Static equilibrium on the path of growing loads: the weights first, then the voltages in steps of V², cut when Newton
 //! fails.
 
-use crate::dynamics::equilibrium::arc_length::{KINK, LimitPoint, PathEnd, STRAIGHT, path_end};
-use crate::dynamics::equilibrium::ramp::Ramp;
-use crate::dynamics::equilibrium::rest_state::{Load, RestState};
-use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
+use crate::dynamics::equilibrium::arc_length::{
+    KINK, LimitPoint, PathEnd, Ramp, STRAIGHT, path_end,
+};
+use crate::dynamics::equilibrium::rest_state::{
+    Equilibrium, Load, RestState, Route, StabilityLoss,
+};
 use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::solving::MultigridUse;

@@ -1,9 +1,7 @@
 //! Equilibria along the path of growing voltages, past limit points.
 
-use crate::dynamics::equilibrium::arc_length::{FIRST, LARGEST, PathPoint, SMALLEST, path};
-use crate::dynamics::equilibrium::ramp::Ramp;
-use crate::dynamics::equilibrium::rest_state::{Instability, Load};
-use crate::dynamics::equilibrium::result::{Equilibrium, Route};
+use crate::dynamics::equilibrium::arc_length::{FIRST, LARGEST, PathPoint, Ramp, SMALLEST, path};
+use crate::dynamics::equilibrium::rest_state::{Equilibrium, Instability, Load, Route};
 use crate::dynamics::equilibrium::stable::stable_equilibrium;
 use crate::dynamics::equilibrium::statics::Statics;
 use crate::dynamics::error::EquilibriumError;

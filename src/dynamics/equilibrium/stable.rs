@@ -12,12 +12,12 @@
 //! Both are the same states. In joint coordinates far ones are reached, as no update leaves the constraints; a state found there is one of
 //! the redundant coordinates up to Newton's method from nearby, which finds the multipliers.
 
-use crate::dynamics::equilibrium::arc_length::{LimitPoint, PathEnd, crossings, path_end};
+use crate::dynamics::equilibrium::arc_length::{LimitPoint, PathEnd, Ramp, crossings, path_end};
 use crate::dynamics::equilibrium::growth::{Grown, at_limit, begin, grow, unloaded};
-use crate::dynamics::equilibrium::ramp::Ramp;
 use crate::dynamics::equilibrium::relaxation::relax;
-use crate::dynamics::equilibrium::rest_state::{Load, RestState};
-use crate::dynamics::equilibrium::result::{Equilibrium, Route, StabilityLoss};
+use crate::dynamics::equilibrium::rest_state::{
+    Equilibrium, Load, RestState, Route, StabilityLoss,
+};
 use crate::dynamics::equilibrium::softest_mode::softest_mode;
 use crate::dynamics::equilibrium::statics::{NewtonOutcome, Statics, UpdateRange};
 use crate::dynamics::error::EquilibriumError;

@@ -1,8 +1,8 @@
-//! The matrix of rest: factorised, with what gives its inertia, or on box grids.
+//! The matrix of rest: factorised, with what gives its inertia and so proves stability, or on box grids, where an iteration does not. It leads to
+//! the state of rest; then its matrix is factorised, as far as its size allows, and all that follows is done with factors.
 
-use crate::dynamics::grid_tangent::GridTangent;
+use crate::dynamics::newton_matrix::NewtonMatrix;
 use crate::dynamics::solving::{MultigridUse, Solving};
-use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::functional::TermKind;
 use crate::model::Model;
@@ -93,23 +93,17 @@ impl Inertia {
 }
 
 /// The matrix of a model, by its nodes where an iteration is wanted and nodes have all unknowns; what gives the inertia, where it is factorised.
-pub(super) fn matrix(model: &Model, multigrid: Option<MultigridUse>) -> (StepMatrix, Inertia) {
-    let grids = multigrid.and_then(|multigrid| {
-        let solving = Solving {
-            multigrid,
-            ..Solving::default()
-        };
-        let by_factors = (multigrid != MultigridUse::Alone).then_some(direct as fn(&_) -> _);
-        let is_wanted = solving.takes_grids(model);
-        is_wanted
-            .then(|| GridTangent::new(model, by_factors, true))
-            .flatten()
-    });
-    match grids {
-        Some(grids) => (StepMatrix::Grids(Box::new(grids)), Inertia::default()),
-        None => (
-            StepMatrix::Direct(Box::new(direct(model))),
-            Inertia::new(model),
-        ),
-    }
+pub(super) fn matrix(model: &Model, multigrid: Option<MultigridUse>) -> (NewtonMatrix, Inertia) {
+    let matrix = match multigrid {
+        Some(multigrid) => {
+            let solving = Solving {
+                multigrid,
+                ..Solving::default()
+            };
+            NewtonMatrix::new(model, solving, true, direct, || direct(model))
+        }
+        None => NewtonMatrix::Direct(Box::new(direct(model))),
+    };
+    let inertia = matrix.direct().map(|_| Inertia::new(model));
+    (matrix, inertia.unwrap_or_default())
 }

@@ -8,9 +8,9 @@ use crate::dynamics::galerkin::lobatto::Lobatto;
 use crate::dynamics::galerkin::rule::{Alpha, Massless, Rule, Weights};
 use crate::dynamics::kinetic::masses;
 use crate::dynamics::momenta::{Start, rates, vector_momenta};
+use crate::dynamics::newton_matrix::NewtonMatrix;
 use crate::dynamics::resolution::typical_energy;
 use crate::dynamics::solving::{Drive, Integrator, Solving};
-use crate::dynamics::step_matrix::StepMatrix;
 use crate::dynamics::stepper::Steps;
 use crate::functional::{
     BlockMask, Blocks, Horizon, Order, Output, Sample, SumDerivatives, TermKind,
@@ -161,8 +161,8 @@ impl<'m> Steps<GalerkinEquations<'m>> {
         let mut scales = of_points.repeat(degree);
         scales.extend(of_samples.repeat(equations.samples.len()));
         let tangent = entries.tangent(scales.len(), Symmetry::Unsymmetric, solving.backend);
-        let matrix = StepMatrix::Direct(Box::new(tangent));
-        Self::by(equations, (matrix, held), scales, solving.newton)
+        let matrix = NewtonMatrix::Direct(Box::new(tangent));
+        Self::by(equations, matrix, held, scales, solving.newton)
     }
 }
 

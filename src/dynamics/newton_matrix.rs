@@ -1,22 +1,55 @@
-//! The matrix of a step: factorised, or on box grids, where an iteration solves.
+//! The matrix of Newton's method, of a step or of rest: factorised, or by the nodes of boxes and meshes, where an iteration solves and
+//! factors take over where it does not converge and there is room for them.
 
 use crate::dynamics::grid_tangent::GridTangent;
+use crate::dynamics::solving::{MultigridUse, Solving};
 use crate::dynamics::step_state::TangentState;
 use crate::dynamics::tangent::Tangent;
+use crate::math::join::available;
 use crate::math::{IsOver, Stopped};
 use crate::model::Model;
 use crate::sparse::{MethodState, Singular};
 
-/// A matrix of a step with its solver.
+/// A matrix with its solver.
 #[derive(Debug)]
-pub(super) enum StepMatrix {
+pub(super) enum NewtonMatrix {
     /// Factorised.
     Direct(Box<Tangent>),
     /// On box grids.
     Grids(Box<GridTangent>),
 }
 
-impl StepMatrix {
+/// Bytes of factors for each unknown of a block of `MEASURED` unknowns; they grow with the cube root of the number.
+const OF_UNKNOWN: f64 = 3.4e4;
+const MEASURED: f64 = 237_500.0;
+
+/// Returns true if there is room for the factors of so many unknowns.
+fn is_affordable(unknowns: usize) -> bool {
+    let unknowns = unknowns as f64;
+    let bytes = unknowns * OF_UNKNOWN * (unknowns / MEASURED).cbrt();
+    available().is_none_or(|available| bytes < available)
+}
+
+impl NewtonMatrix {
+    /// By the nodes where an iteration is wanted and nodes have all unknowns, otherwise factorised by `direct`. Factors that take over from an
+    /// iteration are those of `later`.
+    pub(super) fn new(
+        model: &Model,
+        solving: Solving,
+        is_at_rest: bool,
+        later: fn(&Model) -> Tangent,
+        direct: impl FnOnce() -> Tangent,
+    ) -> Self {
+        let grids = solving.takes_grids(model).then(|| {
+            let later = (solving.multigrid != MultigridUse::Alone).then_some(later);
+            GridTangent::new(model, later, is_at_rest)
+        });
+        match grids.flatten() {
+            Some(grids) => Self::Grids(Box::new(grids)),
+            None => Self::Direct(Box::new(direct())),
+        }
+    }
+
     /// The factorised one.
     pub(super) fn direct(&self) -> Option<&Tangent> {
         match self {
@@ -100,8 +133,13 @@ impl StepMatrix {
         self.direct_mut().is_some_and(|tangent| tangent.take(from))
     }
 
+    /// Factorises from now on where there is room; returns true if it did not before.
+    pub(super) fn fall_back_with_room(&mut self, model: &Model) -> bool {
+        is_affordable(model.variables.unknown_count()) && self.fall_back(model)
+    }
+
     /// Factorises from now on; returns true if it did not before.
-    pub(super) fn fall_back(&mut self, model: &Model) -> bool {
+    fn fall_back(&mut self, model: &Model) -> bool {
         let Self::Grids(grids) = self else {
             return false;
         };
