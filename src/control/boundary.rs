@@ -10,11 +10,11 @@
 //! ```
 
 use crate::control::boundary_conditions::{BoundaryConditions, Rests, TerminalState, rest_at};
-use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::costs::{EnergyCost, resisted, sources};
 use crate::control::error::BoundaryError;
 use crate::control::given_state::{check_muscles, resolve_start};
 use crate::control::goal::instant_at;
+use crate::control::limit::{BoundedQuantity, When};
 use crate::control::limits::{Length, Limits};
 use crate::control::prescribed::at_rest;
 use crate::control::problem::{BoundaryState, Control, Duration, During, Rest, SoughtHold};

@@ -1,9 +1,9 @@
 //! Limits at start and goal: values known before the solve keep them, or are refused by name.
 
 use crate::control::boundary_conditions::BoundaryConditions;
-use crate::control::bounded_quantity::{BoundedQuantity, When};
 use crate::control::error::BoundaryError;
 use crate::control::goal::{Place, instant_at};
+use crate::control::limit::{BoundedQuantity, When};
 use crate::control::problem::{BoundaryState, Control, Limit};
 use crate::control::transcription::Site;
 use crate::coordinates::Configuration;
@@ -217,15 +217,9 @@ impl<'a> End<'a> {
 }
 
 /// A joint limit as a bounded quantity, whatever the coordinates.
-fn of_joint(joint: usize, [lower, upper]: [f64; 2], model: &Model) -> BoundedQuantity {
-    BoundedQuantity {
-        quantity: Quantity::joint(joint, 0.0),
-        lower,
-        upper,
-        rate: None,
-        when: When::Everywhere,
-        name: format!("joint {}", model.system.joints[joint].name),
-    }
+fn of_joint(joint: usize, bounds: [f64; 2], model: &Model) -> BoundedQuantity {
+    let name = format!("joint {}", model.system.joints[joint].name);
+    BoundedQuantity::new(Quantity::joint(joint, 0.0), bounds, When::Everywhere, name)
 }
 
 /// The message of a limit of a reaction that the balance of bodies does not tell.

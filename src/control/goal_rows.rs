@@ -1,8 +1,8 @@
 //! Places and orientations of a goal or a waypoint as equations of one instant, without those that nothing can change.
 
-use crate::control::bounded_quantity::When;
 use crate::control::error::BoundaryError;
 use crate::control::goal::{Orientation, Place, Product};
+use crate::control::limit::When;
 use crate::control::limits::Limits;
 use crate::control::transcription::Site;
 use crate::functional::Sample;

@@ -1,6 +1,6 @@
 //! Path limits and goals as bounded quantities at instants and in intervals.
 
-use crate::control::bounded_quantity::{BoundedQuantity, When};
+use crate::control::limit::{BoundedQuantity, When};
 use crate::control::problem::Limit;
 use crate::model::{At, FieldPlace, Of, Pulling, Quantity, Region, System, What};
 
@@ -119,15 +119,9 @@ impl Limits {
     }
 
     /// Adds a limit.
-    fn add(&mut self, quantity: Quantity, [lower, upper]: [f64; 2], name: String) {
-        self.list.push(BoundedQuantity {
-            quantity,
-            lower,
-            upper,
-            rate: None,
-            when: When::Everywhere,
-            name,
-        });
+    fn add(&mut self, quantity: Quantity, bounds: [f64; 2], name: String) {
+        let bounded = BoundedQuantity::new(quantity, bounds, When::Everywhere, name);
+        self.list.push(bounded);
     }
 
     /// Adds a limit of a rate by the steps of a quantity: bounds of the steps in their unit, or where the length of the intervals is free
@@ -240,26 +234,14 @@ impl Limits {
 
     /// Adds an equality at a single instant.
     pub fn add_equality(&mut self, when: When, quantity: Quantity, value: f64, name: String) {
-        self.list.push(BoundedQuantity {
-            quantity,
-            lower: value,
-            upper: value,
-            rate: None,
-            when,
-            name,
-        });
+        let bounded = BoundedQuantity::new(quantity, [value; 2], when, name);
+        self.list.push(bounded);
     }
 
     /// Adds a lower bound at a single instant.
     pub fn add_lower(&mut self, when: When, quantity: Quantity, lower: f64, name: String) {
-        self.list.push(BoundedQuantity {
-            quantity,
-            lower,
-            upper: f64::INFINITY,
-            rate: None,
-            when,
-            name,
-        });
+        let bounded = BoundedQuantity::new(quantity, [lower, f64::INFINITY], when, name);
+        self.list.push(bounded);
     }
 
     /// Returns the quantities, in order, then those that are subtracted in the intervals before where they are others.

@@ -20,11 +20,11 @@
 
 use crate::control::boundary::is_set_at;
 use crate::control::boundary_conditions::BoundaryConditions;
-use crate::control::bounded_quantity::BoundedQuantity;
 use crate::control::costs::{CostFunction, During, QuantityCost};
 use crate::control::error::BoundaryError;
 use crate::control::guess::{Carried, InitialGuess};
 use crate::control::inputs::Voltages;
+use crate::control::limit::BoundedQuantity;
 use crate::control::limits::Limits;
 use crate::control::problem::{BoundaryState, Control, Limit};
 use crate::control::transcription::Transcription;

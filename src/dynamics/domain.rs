@@ -9,7 +9,7 @@
 
 #![expect(non_snake_case, reason = "notation of the law")]
 
-use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
+use crate::dynamics::trajectory::DiscreteTrajectory;
 use crate::math::{Matrix, Vector, largest_eigenvalue_bound};
 use crate::model::system::{ElectricConstants, Fidelity};
 use crate::model::{Model, SolidBlock};

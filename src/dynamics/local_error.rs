@@ -8,8 +8,7 @@
 //! The sum over all steps is an estimate of how far the motion ends from the exact one where errors neither grow nor decay.
 //! Damping makes them less, an unstable motion more than that.
 
-use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
-use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::trajectory::{DiscreteTrajectory, Trajectory};
 use crate::math::Vector;
 use crate::model::Model;
 

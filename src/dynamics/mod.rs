@@ -4,17 +4,16 @@
 //!   method; `step_state`: the state from which a motion is resumed.
 //! - `newton_matrix`, `grid_tangent`, `tangent`: the matrix of Newton's method, by factors or by multigrid.
 //! - `updates`, `contraction`: updates of an iteration, with kept factors, and how they shrink; `solving`: settings of method and solution.
-//! - `simulate`, `discrete_trajectory`, `observe`, `trajectory`, `part_columns`, `reactions`, `momenta`, `energies`, `kinetic`: step after step,
+//! - `simulate`, `trajectory`, `observe`, `trajectory`, `part_columns`, `part_columns`, `momenta`, `energies`, `momenta`: step after step,
 //!   recorded and observed.
 //! - `resolution`, `singular_configurations`: steps that are refused; `local_error`: the error of those that are not; `domain`: the end of the
 //!   first-order dielectric.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
 //! - `state_space`: steps linearised by state and inputs; `loop_rates`: rates of the joints of closed loops, completed from those that are named;
-//!   `independent`: changes of coordinates that constraints leave free.
+//!   `loop_rates`: changes of coordinates that constraints leave free.
 //! - `equilibrium`: states of rest.
 
 mod contraction;
-mod discrete_trajectory;
 mod domain;
 mod energies;
 mod equilibrium;
@@ -22,8 +21,6 @@ mod error;
 mod exchange;
 mod galerkin;
 mod grid_tangent;
-mod independent;
-mod kinetic;
 mod local_error;
 mod loop_rates;
 mod midpoint;
@@ -31,7 +28,6 @@ mod momenta;
 mod newton_matrix;
 mod observe;
 mod part_columns;
-mod reactions;
 mod resolution;
 mod simulate;
 mod singular_configurations;
@@ -43,7 +39,6 @@ mod tangent;
 pub mod trajectory;
 mod updates;
 
-pub use discrete_trajectory::{DiscreteTrajectory, Reading};
 pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
 pub use domain::{OutOfRange, out_of_range};
 pub use energies::{Energies, Work, energies};
@@ -55,8 +50,8 @@ pub use equilibrium::{
 pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};
 pub use galerkin::GalerkinEquations;
-pub use independent::IndependentChanges;
 pub use local_error::{LocalError, distance_between, local_error, local_error_of};
+pub use loop_rates::IndependentChanges;
 pub use loop_rates::rates_in_loops;
 pub use midpoint::{Midpoint, Stepper};
 pub use momenta::Start;
@@ -76,3 +71,4 @@ pub use step_state::StepperReport;
 pub use step_state::{StepState, TangentState};
 pub use stepper::Equations;
 pub use stepper::Steps;
+pub use trajectory::{DiscreteTrajectory, Reading};

@@ -10,12 +10,12 @@
 //! are equal; otherwise the impulses of its reactions over half a step to either side lie between them, and the mean has neither.
 
 use crate::coordinates::{Configuration, Interval, Scratch};
-use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading, Side, sides};
 use crate::dynamics::energies::{Work, energies};
 use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
-use crate::dynamics::part_columns::{AtInstant, PartColumns};
-use crate::dynamics::reactions::reactions;
-use crate::dynamics::trajectory::{Column, Observations, Trajectory};
+use crate::dynamics::part_columns::{AtInstant, PartColumns, reactions};
+use crate::dynamics::trajectory::{
+    Column, DiscreteTrajectory, Observations, Reading, Side, Trajectory, sides,
+};
 use crate::functional::{Order, TermKind};
 use crate::math::{IsOver, Stopped, Vector, has_pool};
 use crate::model::{Model, Role, SolidBlock};

@@ -1,9 +1,9 @@
 //! Simulation: step after step, recorded.
 
-use crate::dynamics::discrete_trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::momenta::Start;
 use crate::dynamics::solving::{Drive, Integrator, Solving};
 use crate::dynamics::stepper::{Equations, Steps};
+use crate::dynamics::trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::{StepError, Stepper};
 use crate::model::{Model, OPEN};
 use std::ops::ControlFlow;

@@ -5,7 +5,7 @@
 //! a step may have passed through zero, and an element that is sound in the middle may be crushed.
 
 use crate::coordinates::{Configuration, Interval};
-use crate::dynamics::discrete_trajectory::DiscreteTrajectory;
+use crate::dynamics::trajectory::DiscreteTrajectory;
 use crate::functional::TermKind;
 use crate::math::Vector;
 use crate::model::system::{ElasticLaw, Fidelity, Material, Muscle};

@@ -19,7 +19,6 @@ mod bindings;
 mod evaluation;
 mod ffi;
 mod iterate;
-mod linear_report;
 mod loaded;
 mod ma57_adapter;
 mod option_value;
@@ -27,20 +26,19 @@ mod options;
 mod session;
 mod solution;
 mod solver;
-mod warm_start_centring;
 
 use std::ops::ControlFlow;
 
 use crate::nlp::Nlp;
 
 pub use iterate::{Before, Reached};
-pub use linear_report::{LinearReport, StagesReport};
 #[doc(hidden)]
 pub use ma57_adapter::functions_of_ma57;
 pub use option_value::OptionValue;
 pub use option_value::{NoStages, VERSION};
 pub use options::LinearSolver;
 pub use options::{MUMPS_ORDERING, Options, Start};
+pub use session::{LinearReport, StagesReport};
 pub use solution::{Evaluations, Iteration, Seconds, SolverResult, StartingPoint};
 pub use solver::IpoptError;
 pub use solver::Solver;

@@ -3,7 +3,7 @@
 use crate::nlp::{Multipliers, Status};
 use std::ops::AddAssign;
 
-use crate::ipopt::linear_report::LinearReport;
+use crate::ipopt::session::LinearReport;
 
 /// A point to start from.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -13,7 +13,7 @@ use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve as triangular;
 use faer::{Accum, MatMut, MatRef, Par};
 
-use super::envelope::{Envelope, Panel};
+use super::bandwidth_order::{Envelope, Panel};
 
 /// Least pivot against the entries of its equation; less is an error of rounding.
 const REGULAR: f64 = 1e-14;

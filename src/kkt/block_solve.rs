@@ -7,9 +7,9 @@ use faer::linalg::triangular_solve as triangular;
 use faer::{Accum, MatMut, MatRef, Par};
 use pulp::Simd;
 
+use super::bandwidth_order::Panel;
 use super::block_lu::BlockLu;
-use super::envelope::Panel;
-use super::lanes::{dot, subtract};
+use super::dense::{dot, subtract};
 
 /// Factors of a panel, and the rows of right-hand sides that they meet.
 struct PanelRows<'a> {
@@ -199,8 +199,8 @@ impl BlockLu {
 mod tests {
     use pulp::{Arch, Simd, WithSimd};
 
+    use super::super::bandwidth_order::Envelope;
     use super::super::block_lu::{BlockLu, Room};
-    use super::super::envelope::Envelope;
     use crate::math::Random;
 
     const EQUATIONS: usize = 150;

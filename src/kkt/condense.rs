@@ -10,10 +10,9 @@
 //!
 //! A group has as many states as equations, or more; those that are left over stay. They and the rest are the **reduced** unknowns.
 
-use crate::kkt::bandwidth_order::arrange;
+use crate::kkt::bandwidth_order::{Block, Item, arrange};
 use crate::kkt::eliminable_groups;
 use crate::kkt::eliminable_groups::Group;
-use crate::kkt::envelope::{Block, Item};
 use crate::kkt::fronts::Fronts;
 use crate::kkt::graph::{Graph, Progress};
 use crate::kkt::order::Unknown;

@@ -15,13 +15,12 @@
 //!
 //! The halves depend on the system alone, so that factors are the same for any number of threads.
 
+use crate::kkt::bandwidth_order::{Block, Item};
 use crate::kkt::block_lu::{BlockLu, Room};
 use crate::kkt::condense::Condensation;
-use crate::kkt::envelope::{Block, Item};
 use crate::kkt::graph::Progress;
-use crate::kkt::inertia::Inertia;
 use crate::kkt::numeric::{Factors, Outcome};
-use crate::kkt::pivot::Rules;
+use crate::kkt::pivot::{Inertia, Rules};
 use crate::kkt::reduce::{Reduce, Weights};
 use crate::kkt::update::Product;
 use crate::math::{Stopped, join_if};

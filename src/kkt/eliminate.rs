@@ -135,8 +135,8 @@ impl Eliminate<'_, '_, '_> {
 #[cfg(test)]
 mod tests {
     use super::{Count, Dense, Eliminate, Rules, Workspace};
+    use crate::kkt::dense::padded;
     use crate::kkt::graph::Progress;
-    use crate::kkt::lanes::padded;
     use crate::math::Random;
     use nalgebra::DMatrix;
     use pulp::Arch;

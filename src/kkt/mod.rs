@@ -15,15 +15,13 @@
 //! |---|---|
 //! | `graph`, `order`, `tree`, `fronts` | once for a pattern: order of elimination, fronts, where each entry goes |
 //! | `pivot`, `dense`, `update`, `eliminate` | one dense front |
-//! | `numeric`, `inertia` | factors, solutions, equilibration, signs of eigenvalues |
-//! | `eliminable_groups`, `bandwidth_order`, `condense`, `condensed`, `reduce`, `substitute` | unknowns that equations determine, eliminated before all others |
-//! | `envelope`, `block_lu`, `block_solve` | the equations of one group |
-//! | `solver` | when to scale, how strictly to pivot, whether the factors are good |
-//! | `accuracy_check` | how exact factors are, by a system solved with them |
+//! | `numeric`, `pivot` | factors, solutions, equilibration, signs of eigenvalues |
+//! | `condense`, `eliminable_groups`, `condensed`, `reduce`, `substitute` | unknowns that equations determine, eliminated before all others |
+//! | `bandwidth_order`, `block_lu`, `block_solve` | the equations of one group |
+//! | `solver` | when to scale, how strictly to pivot, whether the factors are good, by a system solved with them |
 //!
 //! After the first matrix nothing is allocated, unless more pivots are delayed than ever before.
 
-mod accuracy_check;
 mod bandwidth_order;
 mod block_lu;
 mod block_solve;
@@ -32,11 +30,8 @@ mod condensed;
 mod dense;
 mod eliminable_groups;
 mod eliminate;
-mod envelope;
 mod fronts;
 mod graph;
-mod inertia;
-mod lanes;
 mod numeric;
 mod order;
 mod pivot;
@@ -48,6 +43,6 @@ mod update;
 
 pub use crate::math::Stopped;
 pub use condense::Plan;
-pub use inertia::Inertia;
 pub use order::Unknown;
+pub use pivot::Inertia;
 pub use solver::{Solver, Statistics};

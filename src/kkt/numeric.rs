@@ -3,11 +3,11 @@
 use pulp::Arch;
 
 use super::dense::Dense;
+use super::dense::padded;
 use super::eliminate::{Count, Eliminate, Workspace};
 use super::fronts::{Front, Fronts};
 use super::graph::Progress;
-use super::inertia::Inertia;
-use super::lanes::padded;
+use super::pivot::Inertia;
 use super::pivot::Rules;
 use crate::math::Stopped;
 

@@ -2,11 +2,12 @@
 //!
 //! A pivot is taken if no entry of its columns of L becomes greater than 1/u (threshold partial pivoting of Duff and Reid, 1983). Single
 //! pivots that are large are preferred; else the partner with the largest entry of the column is tried (Bunch and Kaufman, 1977).
-
-use pulp::Simd;
+//!
+//! Signs of the eigenvalues of a symmetric matrix.
 
 use super::dense::Dense;
-use super::lanes::largest;
+use super::dense::largest;
+use pulp::Simd;
 
 /// A single pivot at least this part of the largest other entry of its column is taken without looking for a pair.
 const GOOD: f64 = 0.1;
@@ -137,4 +138,13 @@ impl Dense<'_> {
         }
         beside
     }
+}
+
+/// Numbers of negative eigenvalues, and of those that are zero to rounding.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Inertia {
+    /// Negative eigenvalues.
+    pub negative: usize,
+    /// Eigenvalues that are zero to rounding: pivots without an entry in their column.
+    pub zero: usize,
 }

@@ -5,8 +5,8 @@ use faer::linalg::matmul::matmul;
 use faer::{Accum, MatMut, MatRef, Par};
 use pulp::Arch;
 
+use super::bandwidth_order::Block;
 use super::block_lu::BlockLu;
-use super::envelope::Block;
 use super::graph::Progress;
 use super::update::Curvature;
 use crate::math::Stopped;

@@ -1,8 +1,8 @@
 //! Solution with the factors of a condensed system.
 
+use crate::kkt::bandwidth_order::Item;
 use crate::kkt::condensed::Condensed;
-use crate::kkt::envelope::Item;
-use crate::kkt::lanes::{dot, subtract};
+use crate::kkt::dense::{dot, subtract};
 use crate::kkt::numeric::{Block, Factors};
 use pulp::{Arch, Simd, WithSimd};
 

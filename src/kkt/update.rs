@@ -3,8 +3,8 @@
 //! Tiles of eight rows and four columns stay in registers while the pivots of the panel run by (Goto and van de Geijn, 2008). Both
 //! factors are packed, so that tiles read them in one line.
 
-use crate::kkt::envelope::{Block, Item};
-use crate::kkt::lanes::{GROUP, padded, subtract};
+use crate::kkt::bandwidth_order::{Block, Item};
+use crate::kkt::dense::{GROUP, padded, subtract};
 use pulp::{Simd, WithSimd};
 
 /// Columns of a tile.

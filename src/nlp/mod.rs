@@ -2,11 +2,10 @@
 
 pub mod differences;
 pub mod joined;
-mod multipliers;
 pub(crate) mod squares;
 mod status;
 
-pub use multipliers::Multipliers;
+pub use status::Multipliers;
 pub use status::Status;
 
 /// Lower and upper bounds, one of each per entry; ±∞ where there is none.

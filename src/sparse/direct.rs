@@ -5,9 +5,8 @@
 //!
 //! A sparse factor is tried on a known solution before it is trusted: residuals of a singular or unstable factor may be small,
 //! but the solution does not come back. Later solutions are refined once where their residual is poor.
-
-use std::sync::Arc;
-use std::time::Instant;
+//!
+//! Scales of rows and columns: equations and unknowns in different units meet one criterion of singularity.
 
 use crate::math::{IsOver, Stopped};
 use crate::sparse::backend::Backend;
@@ -15,6 +14,8 @@ use crate::sparse::dissection::Places;
 use crate::sparse::fronts::Fronts;
 use crate::sparse::pattern::Pattern;
 use crate::sparse::{Factorisation, Precision, Singular, Symmetry};
+use std::sync::Arc;
+use std::time::Instant;
 
 /// Above this size, factors for an iteration are in single precision, as `benches/block.rs` measures.
 const SINGLE: usize = 5_000;
@@ -335,5 +336,120 @@ impl Direct {
         } else {
             0.0
         }
+    }
+}
+
+/// Scaling of rows and columns ends when their largest entries are between this and its inverse, or after this number of
+/// rounds.
+const BALANCED: (f64, usize) = (4.0, 12);
+
+impl Direct {
+    /// Finds the largest entry of each row and column.
+    pub(super) fn measure(&mut self) {
+        let [rows, cols] = &mut self.largest;
+        rows.fill(0.0);
+        cols.fill(0.0);
+        // Unlike `f64::max`, this keeps NaN.
+        let grow = |peak: &mut f64, value: f64| {
+            if value.abs() > *peak || value.is_nan() {
+                *peak = value.abs();
+            }
+        };
+        self.pattern.visit(&self.values, |row, col, value| {
+            grow(&mut rows[row], value);
+            grow(&mut cols[col], value);
+        });
+    }
+
+    /// Multiplies rows and columns by functions of their largest entries.
+    fn scale(&mut self, functions: [fn(f64) -> f64; 2]) {
+        let Self {
+            pattern,
+            values,
+            scales,
+            largest,
+            rhs,
+            residual,
+            ..
+        } = self;
+        for (i, factors) in [&mut *residual, &mut *rhs].into_iter().enumerate() {
+            let lists = factors.iter_mut().zip(&largest[i]).zip(&mut scales[i]);
+            for ((factor, &peak), scale) in lists {
+                *factor = if peak > 0.0 { functions[i](peak) } else { 1.0 };
+                *scale *= *factor;
+            }
+        }
+        pattern.scale(values, residual, rhs);
+        self.measure();
+    }
+
+    /// Brings the largest entries near 1.
+    pub(super) fn equilibrate(&mut self) {
+        self.scales.iter_mut().for_each(|scale| scale.fill(1.0));
+        if self.pattern.symmetry == Symmetry::Unsymmetric && self.backend != Backend::Mumps {
+            // Exchanges of rows see the scales of rows alone; a power of two rounds nothing.
+            self.scale([f64::recip, |_| 1.0]);
+            self.scale([|_| 1.0, |peak| peak.log2().round().exp2().recip()]);
+            return;
+        }
+        // Each round halves the orders of magnitude that are left.
+        let (enough, rounds) = BALANCED;
+        let far = |peak: &f64| *peak > enough || *peak < 1.0 / enough;
+        for _ in 0..rounds {
+            if !self.largest.iter().flatten().any(far) {
+                break;
+            }
+            // Powers of two round nothing.
+            self.scale([|peak| (0.5 * peak.log2()).round().exp2().recip(); 2]);
+        }
+    }
+}
+
+/// State of a solver that determines how it factorises the next matrix: what it has learnt from those before.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct MethodState {
+    /// The method, as a table names it.
+    pub method: String,
+    /// Matrices in a row that needed double precision in place of single.
+    pub doubled: usize,
+}
+
+impl Direct {
+    /// Returns the state that determines how the next matrix is factorised.
+    pub fn state(&self) -> MethodState {
+        MethodState {
+            method: self.method().to_owned(),
+            doubled: self.doubled,
+        }
+    }
+
+    /// Factorises the next matrix as another solver of this pattern would; returns true if it can.
+    pub fn take(&mut self, state: &MethodState) -> bool {
+        while self.method() != state.method {
+            match self.factorisation.more_robust() {
+                Some(other) => self.factorisation = other,
+                None => return false,
+            }
+        }
+        self.doubled = state.doubled;
+        self.factored = false;
+        true
+    }
+
+    /// Factorises a matrix that was factorised before, by the method that did so at last.
+    ///
+    /// # Errors
+    /// It was another matrix or method.
+    pub fn factor_again(&mut self, values: &[f64]) -> Result<(), Singular> {
+        self.pattern.gather(values, &mut self.values);
+        self.measure();
+        self.equilibrate();
+        self.rehearse();
+        let outcome = match self.backend {
+            Backend::Dense => self.factorisation.factor(&self.values),
+            _ => self.attempt(&|| false).expect("it is never time to stop"),
+        };
+        self.factored = outcome.is_ok();
+        outcome
     }
 }

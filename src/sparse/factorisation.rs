@@ -1,7 +1,6 @@
 //! Interface of the methods of factorisation, and the error of a singular matrix.
 
 use crate::math::{IsOver, Stopped};
-use crate::sparse::Precision;
 use std::fmt::Debug;
 use thiserror::Error;
 
@@ -59,5 +58,25 @@ pub trait Factorisation: Debug + Send {
     /// A factorisation of the same pattern that may succeed where this one does not, if there is one.
     fn more_robust(&self) -> Option<Box<dyn Factorisation>> {
         None
+    }
+}
+
+/// Digits of the numbers of a factor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Precision {
+    /// 24 bits: half the memory, and half the time of what only moves or multiplies numbers.
+    Single,
+    /// 53 bits.
+    Double,
+}
+
+impl Precision {
+    /// Largest error of a known solution that is accepted, with each unknown measured by its column: in single precision the part of an error
+    /// that each iteration leaves.
+    pub(crate) fn tolerated_loss(self) -> f64 {
+        match self {
+            Self::Single => 0.2,
+            Self::Double => 1e-6,
+        }
     }
 }

@@ -2,9 +2,8 @@
 
 use crate::control::transcription::Transcription;
 use crate::control::transcription::limit_rows::{
-    BEFORE, BEFORE_INSTANT, DURATION, LimitRow, SCALAR, Site,
+    BEFORE, BEFORE_INSTANT, DURATION, LimitRow, SCALAR, Site, Step,
 };
-use crate::control::transcription::step::Step;
 use crate::functional::{Horizon, Measure, Sample, SumDerivatives};
 use crate::math::Vector;
 

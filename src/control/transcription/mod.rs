@@ -9,11 +9,9 @@
 //!
 //! A [`Transcription`] has constant parts, `layout` (unknowns, equations, limits), `objective` and `structure` (entries of the derivatives),
 //! and one that every evaluation changes, `workspace`. Its methods are in `program` (the trait [`Nlp`]), `point`, `interval_pass`, `scaling`,
-//! `costs`, `energies`, `time_values`, `update_endpoints` and `squares`.
+//! `costs` and `update_endpoints`.
 
-mod cost_rows;
 mod costs;
-mod energies;
 mod energy_rows;
 mod interval_pass;
 mod kinematic_state;
@@ -25,19 +23,14 @@ mod point;
 mod program;
 mod scaling;
 mod segment;
-mod squares;
-mod start_momentum;
-mod step;
 pub(super) mod structure;
-mod time_rows;
-mod time_values;
 mod update_endpoints;
 mod workspace;
 
 use crate::control::BoundaryError;
 use crate::control::boundary_conditions::{BoundaryConditions, Rests};
-use crate::control::bounded_quantity::BoundedQuantity;
 use crate::control::guess::InitialGuess;
+use crate::control::limit::BoundedQuantity;
 use crate::control::numbering::Numbering;
 use crate::control::problem::{self, Control};
 use crate::functional::{BlockMask, ParameterOrder};
@@ -47,8 +40,8 @@ use layout::Layout;
 pub use layout::Outline;
 pub(super) use limit_rows::Site;
 use objective::Objective;
-use start_momentum::StartMomentum;
 use structure::{Structure, overdetermined};
+use update_endpoints::StartMomentum;
 use workspace::Workspace;
 
 /// A control problem as a nonlinear program.

@@ -3,7 +3,8 @@
 use crate::coordinates::pattern::StepPattern;
 use crate::coordinates::pull_back::destination::{Destination, Site};
 use crate::coordinates::pull_back::group::Group;
-use crate::coordinates::pull_back::images::{BlockKind, Pair};
+use crate::coordinates::pull_back::images::BlockKind;
+use crate::coordinates::pull_back::product::Pair;
 use crate::coordinates::tree::{LANES, TangentColumns};
 use crate::functional::{BlockMask, Blocks};
 use pulp::{Arch, Scalar, Simd, WithSimd};

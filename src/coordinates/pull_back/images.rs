@@ -1,5 +1,6 @@
 //! Columns of vectors, and their images under the blocks of pairs: three rows for each pair, as long as the columns.
 
+use crate::coordinates::pull_back::product::Pair;
 use crate::functional::Blocks;
 use crate::math::Matrix;
 use pulp::Simd;
@@ -165,14 +166,4 @@ pub(super) enum BlockKind {
     Full,
     /// A multiple of the identity; it comes from an energy, and is the same for the pair in the other order.
     Isotropic,
-}
-
-/// A coupled pair of vectors.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pair {
-    pub(super) slot: u32,
-    /// Slot of the pair in the other order.
-    pub(super) transposed: u32,
-    /// Offsets at which the columns of both start.
-    pub(super) first: [u32; 2],
 }

@@ -17,9 +17,10 @@ use articulated::{BlockDestination, Ends, Groups};
 pub use destination::Destination;
 use destination::Linear;
 pub(super) use destination::Site;
-use images::{BlockKind, Pair};
+use images::BlockKind;
 use joined::Joined;
 use mixed::Mixed;
+use product::Pair;
 
 /// The plan of a pull-back: which blocks go where.
 #[derive(Clone, Debug, Default)]

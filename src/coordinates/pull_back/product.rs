@@ -1,8 +1,17 @@
 //! The dense product of a group, with the sums of a few rows and columns in registers.
 
-use crate::coordinates::pull_back::images::Pair;
 use crate::coordinates::tree::LANES;
 use pulp::Simd;
+
+/// A coupled pair of vectors.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    pub(super) slot: u32,
+    /// Slot of the pair in the other order.
+    pub(super) transposed: u32,
+    /// Offsets at which the columns of both start.
+    pub(super) first: [u32; 2],
+}
 
 /// `out ← Σ aᵀ t` over all pairs of all panels, a the columns of the first vector and t the image.
 pub(super) struct Product<'a> {
@@ -84,8 +93,7 @@ impl Product<'_> {
 
 #[cfg(test)]
 mod tests {
-    use crate::coordinates::pull_back::images::Pair;
-    use crate::coordinates::pull_back::product::Product;
+    use crate::coordinates::pull_back::product::{Pair, Product};
     use pulp::{Arch, Scalar, Simd, WithSimd};
 
     impl WithSimd for Product<'_> {

@@ -1,12 +1,11 @@
 //! Steps with several points or samples: the equations of every [`Rule`].
 //!
-//! `rule` defines the methods, with the points of `lobatto`; `equations` and `state` are those of a step; `jacobian_positions` and `tangent` hold the derivatives.
+//! `rule` defines the methods, with the points of `lobatto`; `equations` and `state` are those of a step; `tangent` holds the derivatives.
 //!
 //! Unknowns of point ν = 1 … s are its coordinates and the multipliers of its rows; then come the scalars of each sample that have
 //! an equation, such as potentials with Gauss's law. Constraints hold at every point.
 
 mod equations;
-mod jacobian_positions;
 mod lobatto;
 mod rule;
 mod state;

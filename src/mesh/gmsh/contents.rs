@@ -1,9 +1,12 @@
 //! Contents of a file, by the numbers in it.
+//!
+//! The lines of a file with their numbers, and the words of a line.
 
-use super::lines::Line;
 use crate::mesh::error::MeshError;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
+use std::iter::Enumerate;
+use std::str::{FromStr, SplitWhitespace};
 
 /// Name of the region of hexahedra that belong to no physical volume.
 pub const UNGROUPED: &str = "ungrouped";
@@ -47,5 +50,202 @@ pub(super) fn insert(
             format!("a second node {number}"),
             "a number of its own for each node",
         )),
+    }
+}
+
+/// Remaining lines of a file; empty lines do not count.
+pub(super) struct Lines<'a> {
+    file: &'a str,
+    left: Enumerate<std::str::Lines<'a>>,
+    /// Number of the line that was read last.
+    number: usize,
+}
+
+/// A line without the spaces around it.
+#[derive(Clone, Copy)]
+pub(super) struct Line<'a> {
+    file: &'a str,
+    pub(super) number: usize,
+    pub(super) text: &'a str,
+}
+
+/// The words of a line.
+pub(super) struct Words<'a> {
+    line: Line<'a>,
+    left: SplitWhitespace<'a>,
+    /// Expected form of the line.
+    shape: &'a str,
+}
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(file: &'a str, text: &'a str) -> Self {
+        Self {
+            file,
+            left: text.lines().enumerate(),
+            number: 0,
+        }
+    }
+
+    /// The next line, or nothing at the end of the file.
+    pub(super) fn next_or_end(&mut self) -> Option<Line<'a>> {
+        for (index, text) in self.left.by_ref() {
+            self.number = index + 1;
+            let text = text.trim();
+            if !text.is_empty() {
+                return Some(Line {
+                    file: self.file,
+                    number: self.number,
+                    text,
+                });
+            }
+        }
+        None
+    }
+
+    /// The next line, where one is expected.
+    pub(super) fn next(&mut self, expected: &str) -> Result<Line<'a>, MeshError> {
+        self.next_or_end().ok_or_else(|| self.at_end(expected))
+    }
+
+    /// The next line, which continues a section: a count that is too large is found at the section's end.
+    pub(super) fn record(&mut self, expected: &str) -> Result<Line<'a>, MeshError> {
+        let line = self.next(expected)?;
+        if line.text.starts_with('$') {
+            let found = format!("{} before as many lines as were counted", quoted(line.text));
+            return Err(line.error(found, expected));
+        }
+        Ok(line)
+    }
+
+    /// The line that ends a section.
+    pub(super) fn end(&mut self, name: &str) -> Result<(), MeshError> {
+        let line = self.next(name)?;
+        if line.text == name {
+            return Ok(());
+        }
+        let found = format!("{} after as many lines as were counted", quoted(line.text));
+        Err(line.error(found, name))
+    }
+
+    /// Leaves out a section up to the line that ends it.
+    pub(super) fn skip(&mut self, end: &str) -> Result<(), MeshError> {
+        while self.next(end)?.text != end {}
+        Ok(())
+    }
+
+    /// The end of the file where something is expected.
+    pub(super) fn at_end(&self, expected: &str) -> MeshError {
+        let line = Line {
+            file: self.file,
+            number: self.number.max(1),
+            text: "",
+        };
+        line.error("the end of the file", expected)
+    }
+}
+
+impl<'a> Line<'a> {
+    /// This line is not as expected.
+    pub(super) fn error(&self, found: impl Into<String>, expected: impl Into<String>) -> MeshError {
+        MeshError::Line {
+            file: self.file.to_owned(),
+            line: self.number,
+            found: found.into(),
+            expected: expected.into(),
+        }
+    }
+
+    /// The words of a line that is expected to say what `shape` describes.
+    pub(super) fn words(&self, shape: &'a str) -> Words<'a> {
+        Words {
+            line: *self,
+            left: self.text.split_whitespace(),
+            shape,
+        }
+    }
+}
+
+impl<'a> Words<'a> {
+    /// The next word.
+    pub(super) fn word(&mut self) -> Result<&'a str, MeshError> {
+        let word = self.left.next();
+        word.ok_or_else(|| self.line.error(quoted(self.line.text), self.shape))
+    }
+
+    /// The next word as a number.
+    pub(super) fn number<T: FromStr>(&mut self) -> Result<T, MeshError> {
+        let word = self.word()?;
+        word.parse().map_err(|_| {
+            let found = format!("{} in {}", quoted(word), quoted(self.line.text));
+            self.line.error(found, self.shape)
+        })
+    }
+
+    /// The next three words as a place.
+    pub(super) fn place(&mut self) -> Result<Vector3<f64>, MeshError> {
+        let place = Vector3::new(self.number()?, self.number()?, self.number()?);
+        if place.iter().all(|x: &f64| x.is_finite()) {
+            return Ok(place);
+        }
+        let expected = "finite coordinates";
+        Err(self.line.error(quoted(self.line.text), expected))
+    }
+
+    /// Nothing is left.
+    pub(super) fn end(&mut self) -> Result<(), MeshError> {
+        match self.left.next() {
+            None => Ok(()),
+            Some(_) => Err(self.line.error(quoted(self.line.text), self.shape)),
+        }
+    }
+}
+
+/// Text of a file in a message, cut where it is long.
+pub(super) fn quoted(text: &str) -> String {
+    match text.char_indices().nth(60) {
+        Some((end, _)) => format!("{:?} …", &text[..end]),
+        None => format!("{text:?}"),
+    }
+}
+
+const KINDS: [&str; 19] = [
+    "2-node line",
+    "3-node triangle",
+    "4-node quadrangle",
+    "4-node tetrahedron",
+    "8-node hexahedron",
+    "6-node prism",
+    "5-node pyramid",
+    "3-node line of second order",
+    "6-node triangle of second order",
+    "9-node quadrangle of second order",
+    "10-node tetrahedron of second order",
+    "27-node hexahedron of second order",
+    "18-node prism of second order",
+    "14-node pyramid of second order",
+    "1-node point",
+    "8-node quadrangle of second order",
+    "20-node hexahedron of second order",
+    "15-node prism of second order",
+    "13-node pyramid of second order",
+];
+
+/// Dimension and number of nodes of a kind that is of use.
+pub(super) fn shape(kind: usize, line: &Line<'_>) -> Result<(usize, usize), MeshError> {
+    match kind {
+        15 => Ok((0, 1)),
+        1 => Ok((1, 2)),
+        3 => Ok((2, 4)),
+        5 => Ok((3, 8)),
+        _ => {
+            let name = kind.checked_sub(1).and_then(|index| KINDS.get(index));
+            let found = match name {
+                Some(name) => format!("a {name} (type {kind})"),
+                None => format!("an element of type {kind}"),
+            };
+            let expected = "8-node hexahedra (type 5) bounded by 4-node quadrangles (type 3), 2-node lines (type 1) and \
+                 points (type 15): mesh with transfinite or extruded, recombined volumes of first order";
+            Err(line.error(found, expected))
+        }
     }
 }

@@ -9,8 +9,6 @@
 
 mod assemble;
 mod contents;
-mod kind;
-mod lines;
 mod version2;
 mod version4;
 
@@ -18,7 +16,7 @@ use super::Mesh;
 use super::error::MeshError;
 pub use contents::UNGROUPED;
 use contents::{Contents, Group};
-use lines::{Line, Lines, quoted};
+use contents::{Line, Lines, quoted};
 use std::collections::BTreeMap;
 use std::path::Path;
 

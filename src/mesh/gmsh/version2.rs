@@ -1,8 +1,6 @@
 //! Nodes and elements of format 2: one list of each, elements carry the number of their physical group.
 
-use super::contents::{Element, insert};
-use super::kind;
-use super::lines::Lines;
+use super::contents::{Element, Lines, insert};
 use crate::mesh::error::MeshError;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -33,7 +31,7 @@ pub(super) fn elements(lines: &mut Lines<'_>) -> Result<Vec<Element>, MeshError>
         let line = lines.record(shape)?;
         let mut words = line.words(shape);
         let number = words.number()?;
-        let (dimension, corners) = kind::shape(words.number()?, &line)?;
+        let (dimension, corners) = super::contents::shape(words.number()?, &line)?;
         let tags: usize = words.number()?;
         let mut groups = Vec::new();
         for tag in 0..tags {

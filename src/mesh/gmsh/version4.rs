@@ -1,8 +1,6 @@
 //! Entities, nodes and elements of format 4.1: blocks belong to entities, which carry the numbers of physical groups.
 
-use super::contents::{Element, insert};
-use super::kind;
-use super::lines::{Line, Lines};
+use super::contents::{Element, Line, Lines, insert};
 use crate::mesh::error::MeshError;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -94,7 +92,7 @@ pub(super) fn elements(
         let line = lines.record(shape)?;
         let mut words = line.words(shape);
         let entity: (usize, i64) = (words.number()?, words.number()?);
-        let (dimension, corners) = kind::shape(words.number()?, &line)?;
+        let (dimension, corners) = super::contents::shape(words.number()?, &line)?;
         let count: usize = words.number()?;
         words.end()?;
         if entity.0 != dimension {

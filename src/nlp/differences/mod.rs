@@ -23,14 +23,13 @@
 //! differences are apart by about what each is off; a wrong entry is off by the same from both.
 
 mod comparison;
-mod report;
 
 use crate::math::Random;
 use crate::nlp::{Entries, Nlp};
 
 use comparison::Comparison;
 pub use comparison::TOLERANCE;
-pub use report::{EntryStatus, Matrix, Report, WrongEntry};
+pub use comparison::{EntryStatus, Matrix, Report, WrongEntry};
 
 /// The first step of a difference over the second one.
 const SHORTER: f64 = 8.0;

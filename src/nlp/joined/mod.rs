@@ -7,13 +7,12 @@
 //! such as the input of an interval, it is one stage. One program alone keeps its numbers, bit by bit.
 
 mod places;
-mod worst;
 
 use std::fmt;
 
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
+use places::{Part, Worst, each};
 pub use places::{Places, SharedVariable};
-use worst::{Part, Worst, each};
 
 /// Several programs as one.
 pub struct Joined<N> {

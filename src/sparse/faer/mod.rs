@@ -1,7 +1,6 @@
 //! faer: LU with row exchanges of unsymmetric and LDLᵀ without exchanges of symmetric matrices, by supernodes.
 
-mod ldlt;
-mod lu;
+mod factors;
 
 use std::fmt;
 
@@ -11,8 +10,7 @@ use faer::sparse::SymbolicSparseColMatRef;
 
 use crate::sparse::pattern::Pattern;
 
-pub(crate) use ldlt::FaerLdlt;
-pub(crate) use lu::FaerLu;
+pub(crate) use factors::{FaerLdlt, FaerLu};
 
 /// Columns of a right-hand side.
 const RIGHT: usize = 1;

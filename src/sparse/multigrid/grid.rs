@@ -1,12 +1,11 @@
 //! Box grids of nodes, from the finest to the coarsest: trilinear transfer P, Galerkin coarse matrices Pᵀ A P, and sweeps over slabs.
 
 use crate::math::join;
-use crate::sparse::multigrid::axis::{Axis, coarsening};
 use crate::sparse::multigrid::grid_pressures::GridElements;
 use crate::sparse::multigrid::level::{COARSEST, Hierarchy, Level, Nodes};
 use crate::sparse::multigrid::node_grid::{
-    AtNode, Block, COMPONENTS, Field, NEIGHBOURS, NodeGrid, OWN, free_components, indices,
-    neighbour, node_at, offsets,
+    AtNode, Axis, Block, COMPONENTS, Field, NEIGHBOURS, NodeGrid, OWN, coarsening, free_components,
+    indices, neighbour, node_at, offsets,
 };
 use crate::sparse::multigrid::slab::{Equations, Slab, slabs, split};
 use crate::sparse::multigrid::triangles::{Row, Rows, Triangles};

@@ -1,9 +1,8 @@
 //! Elements of a grid with their pressures. They count like their first nodes; there is none where a node is a last one along an axis.
 
-use crate::sparse::multigrid::axis::Axis;
 use crate::sparse::multigrid::node_grid::{
-    AtNode, Block, COMPONENTS, CORNERS, Field, NEIGHBOURS, OWN, corners, indices, neighbour_of,
-    node_at,
+    AtNode, Axis, Block, COMPONENTS, CORNERS, Field, NEIGHBOURS, OWN, corners, indices,
+    neighbour_of, node_at,
 };
 use crate::sparse::multigrid::pressures::{Elements, Pressures};
 use std::ops::Range;

@@ -1,16 +1,13 @@
 //! Levels of a mesh without a grid: matrices by rows of blocks, and transfer by smoothed aggregation.
 
 use crate::math::join;
-use crate::sparse::multigrid::aggregates::Points;
-use crate::sparse::multigrid::aggregation::Aggregation;
-use crate::sparse::multigrid::block_rows::BlockRows;
+use crate::sparse::multigrid::aggregation::{Aggregation, Points};
 use crate::sparse::multigrid::level::{COARSEST, Hierarchy, Level, Nodes};
-use crate::sparse::multigrid::mesh_matrix::MeshMatrix;
 use crate::sparse::multigrid::mesh_pressures::MeshElements;
 use crate::sparse::multigrid::node_grid::{
     AtNode, Block, COMPONENTS, Field, add, add_transposed, free_components, solved,
 };
-use crate::sparse::multigrid::triangles::NodeMesh;
+use crate::sparse::multigrid::triangles::{BlockRows, MeshMatrix, NodeMesh};
 use std::sync::Arc;
 
 /// Products by which the largest eigenvalue of D⁻¹ A is estimated.

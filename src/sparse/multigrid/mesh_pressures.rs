@@ -2,12 +2,10 @@
 //!
 //! Elements with a node in common are neighbours; an aggregate has one pressure, and the sums of volumes and compliances.
 
-use crate::sparse::multigrid::aggregates::Points;
-use crate::sparse::multigrid::aggregation::Aggregation;
-use crate::sparse::multigrid::block_rows::BlockRows;
+use crate::sparse::multigrid::aggregation::{Aggregation, Points};
 use crate::sparse::multigrid::node_grid::{AtNode, Block, COMPONENTS, Field, add, add_transposed};
 use crate::sparse::multigrid::pressures::{Elements, Pressures};
-use crate::sparse::multigrid::triangles::NodeMesh;
+use crate::sparse::multigrid::triangles::{BlockRows, NodeMesh};
 use std::ops::Range;
 
 /// The elements of a level.

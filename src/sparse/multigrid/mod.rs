@@ -6,18 +6,13 @@
 //! coarsest level. Levels become coarser along short edges only, so that thin layers do no harm (`docs/theory.md`, linear systems of
 //! finite elements).
 
-mod aggregates;
 mod aggregation;
-mod axis;
-mod block_rows;
 mod grid;
 mod grid_pressures;
 mod krylov;
 mod level;
 mod lobpcg;
-mod matrix_values;
 mod mesh;
-mod mesh_matrix;
 mod mesh_pressures;
 mod node_grid;
 mod parts;

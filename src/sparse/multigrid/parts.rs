@@ -2,7 +2,6 @@
 
 use crate::math::join;
 use crate::sparse::Singular;
-use crate::sparse::multigrid::block_rows::BlockRows;
 use crate::sparse::multigrid::grid::Grid;
 use crate::sparse::multigrid::krylov::Operator;
 use crate::sparse::multigrid::level::{Hierarchy, Nodes};
@@ -11,7 +10,7 @@ use crate::sparse::multigrid::node_grid::{
     AtNode, Block, COMPONENTS, ENTRIES, Field, NEIGHBOURS, NodeBlock, NodeGrid, VolumePlaces,
     add_double, corners, offsets,
 };
-use crate::sparse::multigrid::triangles::{BlockPlaces, NodeMesh};
+use crate::sparse::multigrid::triangles::{BlockPlaces, BlockRows, NodeMesh};
 use crate::sparse::multigrid::volumes::{Volumes, scale_of_mean};
 use std::ops::Range;
 use std::sync::Arc;
