@@ -238,6 +238,7 @@ impl Scaler {
             let scaled = match (weight, value.as_f64()) {
                 (Some((.., unit)), Some(weight)) => Value::from(weight / self.scales.of_unit(unit)),
                 _ if key == "relative_permittivity" => self.permittivity(object),
+                _ if key.ends_with(".relative_permittivity") => self.in_vacuum(value),
                 _ if key == "columns" => self.columns(value),
                 _ => self.scaled(of(key).unwrap_or(&Value::Null), within, value),
             };
@@ -290,6 +291,16 @@ impl Scaler {
         } else {
             Value::from(value * factor)
         }
+    }
+
+    /// What stays where the permittivity of vacuum does, such as bounds of a relative one.
+    fn in_vacuum(&self, value: &Value) -> Value {
+        let factor = self.scales.of_unit("F/m");
+        assert!(
+            (factor - 1.0).abs() < 1e-14,
+            "{value} is relative to vacuum"
+        );
+        value.clone()
     }
 
     /// Columns of numbers by headers with units in brackets.
