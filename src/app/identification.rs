@@ -3,8 +3,8 @@
 use crate::app::error::CommandError;
 use crate::app::identification_summary::Identification;
 use crate::app::identification_verdict::{remarks, status};
-use crate::app::overwrite_check::make_folder_of;
-use crate::app::partial_result::EARLIER;
+use crate::app::kept::overwrite_check::make_folder_of;
+use crate::app::kept::partial_result::EARLIER;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted};
 use crate::app::summary::Summary;
 use crate::control::problem;

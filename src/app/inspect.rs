@@ -2,7 +2,7 @@
 
 use crate::app::blocks::BlockSizes;
 use crate::app::error::CommandError;
-use crate::app::overwrite_check::make_folder;
+use crate::app::kept::overwrite_check::make_folder;
 use crate::app::program::joined;
 use crate::app::request::key;
 use crate::app::request::{CommandInput, CommandOutput};

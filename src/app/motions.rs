@@ -1,14 +1,15 @@
 //! Several motions from file to folder: each in a folder of its own within that of the results, and what they have in common, once.
 
 use crate::app::error::CommandError;
-use crate::app::overwrite_check::{make_folder, make_folder_of};
-use crate::app::partial_result::{EARLIER, STOPPED};
+use crate::app::fields;
+use crate::app::kept::overwrite_check::{make_folder, make_folder_of};
+use crate::app::kept::partial_result::{EARLIER, STOPPED};
+use crate::app::kept::{solution_file, unfinished};
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted, counted};
 use crate::app::solve::{Solved, add_notes};
 use crate::app::solve_summary::{describe, outcome_word};
 use crate::app::summary::{SoughtValue, Summary, Versions};
-use crate::app::{fields, solution_file, unfinished};
 use crate::control::{Motions, PEAK_VOLTAGE};
 use crate::files::{Loaded, lay_out};
 use crate::math::significant;

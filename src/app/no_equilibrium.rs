@@ -1,8 +1,8 @@
 //! Result of a run that finds no state of rest to begin with, to end with, or at all, or no optimum that its controller follows: its summary alone.
 
 use crate::app::error::CommandError;
-use crate::app::overwrite_check::make_folder_of;
-use crate::app::partial_result::EARLIER;
+use crate::app::kept::overwrite_check::make_folder_of;
+use crate::app::kept::partial_result::EARLIER;
 use crate::app::request::key;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::summary::Summary;

@@ -1,7 +1,7 @@
 //! A control problem in `summary.json`, on its page and in the answer of its command: program, notes, times, rows, convergence, goal.
 
+use crate::app::kept::partial_result::STOPPED;
 use crate::app::linear_systems::LinearSystems;
-use crate::app::partial_result::STOPPED;
 use crate::app::request::{CommandOutput, counted};
 use crate::app::sensitivity_summary::SensitivitySummary;
 use crate::app::summary::{Evaluations, PerInterval, Program, Seconds, SoughtValue, Summary};

@@ -4,13 +4,12 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::app::error::CommandError;
+use crate::app::kept::overwrite_check::refuse_foreign;
+use crate::app::kept::resume_file;
 use crate::app::no_equilibrium::refuse_all_but_motions;
-use crate::app::overwrite_check::refuse_foreign;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::{
-    equilibrium, identification, motions, no_equilibrium, resume_file, simulation, solve,
-};
+use crate::app::{equilibrium, identification, motions, no_equilibrium, simulation, solve};
 use crate::control::problem::{BoundaryState, Guess, Task};
 use crate::control::{Earlier, Motions};
 use crate::files::solution::SolutionFile;

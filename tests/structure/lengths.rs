@@ -1,9 +1,33 @@
-//! One concept a file: none of them is long.
+//! One concept a file: none of them is long, nor a cupboard, and no folder holds many.
 
 use crate::sources::{Source, sources};
+use std::collections::BTreeMap;
 
 /// Most lines of a file.
 const MOST: usize = 600;
+/// Fewest lines of a file of `src` that is no head of a folder.
+const FEWEST: usize = 60;
+/// Shorter files: traits, tables, and what others could not hold without a circle. The list only gets shorter.
+const SHORT: [&str; 16] = [
+    "app/multistart/rank.rs",
+    "control/earlier.rs",
+    "control/mesh_match.rs",
+    "control/transcription/kinematic_state.rs",
+    "energy/constraint.rs",
+    "files/json/layout.rs",
+    "files/json/objects.rs",
+    "files/scene/components/tendon.rs",
+    "files/scene/graph.rs",
+    "files/scene/point.rs",
+    "interface/builder.rs",
+    "ipopt/loaded.rs",
+    "ipopt/option_value.rs",
+    "model/system/maxwell.rs",
+    "report/origin.rs",
+    "report/quoting.rs",
+];
+/// Most files of a folder, those of its folders apart.
+const IN_FOLDER: usize = 30;
 
 #[test]
 fn files_are_short() {
@@ -16,4 +40,23 @@ fn files_are_short() {
         }
     }
     assert!(seen > 300, "{seen} files");
+}
+
+#[test]
+fn files_of_the_library_are_rooms() {
+    let mut folders: BTreeMap<String, usize> = BTreeMap::new();
+    for Source { name, text } in sources("src") {
+        let (folder, file) = name.rsplit_once('/').unwrap_or(("", &name));
+        *folders.entry(folder.to_owned()).or_default() += 1;
+        let is_head = ["mod.rs", "lib.rs", "main.rs"].contains(&file);
+        let is_short = text.lines().count() < FEWEST;
+        assert!(
+            is_short == SHORT.contains(&&*name) || is_head,
+            "src/{name} has {} lines, {FEWEST} are a room",
+            text.lines().count()
+        );
+    }
+    for (folder, files) in folders {
+        assert!(files <= IN_FOLDER, "src/{folder} has {files} files");
+    }
 }

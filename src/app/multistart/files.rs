@@ -3,7 +3,7 @@
 use super::ended::{Ended, best, folder_of};
 use crate::app::batch::{Batch, RunIn};
 use crate::app::error::CommandError;
-use crate::app::overwrite_check::make_folder;
+use crate::app::kept::overwrite_check::make_folder;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::files::{lay_out, printable};
 use crate::math::significant;

@@ -14,8 +14,8 @@ use std::time::Instant;
 
 use crate::app::batch::{Batch, RunIn, run_all, task_runs_at_once};
 use crate::app::error::CommandError;
+use crate::app::kept::overwrite_check::{make_folder, make_folder_of};
 use crate::app::no_equilibrium;
-use crate::app::overwrite_check::{make_folder, make_folder_of};
 use crate::app::progress::Progress;
 use crate::app::request::key;
 use crate::app::request::{CommandInput, CommandOutput};

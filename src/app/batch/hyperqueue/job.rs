@@ -2,7 +2,7 @@
 
 use crate::app::batch::launch::{RunEnd, Said, of_status, words};
 use crate::app::error::CommandError;
-use crate::app::overwrite_check::make_folder;
+use crate::app::kept::overwrite_check::make_folder;
 use crate::app::request::CommandInput;
 use crate::report::atomic;
 use crate::report::atomic::WriteError;

@@ -18,7 +18,7 @@ struct Summary {
 ///
 /// # Errors
 /// The folder that was not named has results of another problem file.
-pub(super) fn refuse_foreign(request: &CommandInput) -> Result<(), CommandError> {
+pub(in crate::app) fn refuse_foreign(request: &CommandInput) -> Result<(), CommandError> {
     match foreign(request) {
         Some(input) if request.output.is_none() => Err(CommandError::Foreign {
             folder: request.folder(),
@@ -30,7 +30,7 @@ pub(super) fn refuse_foreign(request: &CommandInput) -> Result<(), CommandError>
 }
 
 /// A warning that results of another problem file are replaced, for a run whose input is right.
-pub(super) fn replaced(request: &CommandInput) -> Option<String> {
+pub(in crate::app) fn replaced(request: &CommandInput) -> Option<String> {
     let (folder, input) = (request.folder(), foreign(request)?);
     let (folder, input) = (folder.display(), input.display());
     Some(format!(
@@ -76,7 +76,7 @@ pub(crate) fn without_dots(path: &Path) -> PathBuf {
 }
 
 /// Makes the folder of the results of a run, and warns where those of another problem are replaced.
-pub(super) fn make_folder_of(request: &CommandInput) -> Result<PathBuf, WriteError> {
+pub(in crate::app) fn make_folder_of(request: &CommandInput) -> Result<PathBuf, WriteError> {
     if let Some(words) = replaced(request) {
         tracing::warn!("{words}");
     }

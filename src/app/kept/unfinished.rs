@@ -1,10 +1,10 @@
 //! Latest iterate of a long run, stored in the folder of the results in case it is killed.
 
 use crate::app::error::CommandError;
-use crate::app::overwrite_check::{make_folder, replaced};
+use crate::app::kept::overwrite_check::{make_folder, replaced};
+use crate::app::kept::{resume_file, solution_file};
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::CommandInput;
-use crate::app::{resume_file, solution_file};
 use crate::model::Model;
 use crate::report::atomic::WriteError;
 use crate::tasks::SolveRequest;
@@ -24,7 +24,7 @@ const MEETS: f64 = 1e-6;
 
 /// The folder of the results while a run goes on, with a file of it that is written anew now and then.
 #[derive(Debug)]
-pub(super) struct Unfinished {
+pub(in crate::app) struct Unfinished {
     folder: PathBuf,
     path: PathBuf,
     /// Time from which on it may be written next.
@@ -39,7 +39,7 @@ pub(super) struct Unfinished {
 
 impl Unfinished {
     /// Nothing is written yet; the first time comes after two seconds.
-    pub(super) fn new(request: &CommandInput, file: &str) -> Self {
+    pub(in crate::app) fn new(request: &CommandInput, file: &str) -> Self {
         let folder = request.folder();
         Self {
             path: folder.join(file),
@@ -52,7 +52,7 @@ impl Unfinished {
     }
 
     /// Makes the folder at the first iterate: one that cannot be made is told before a long run, not after it.
-    pub(super) fn begin(&mut self) {
+    pub(in crate::app) fn begin(&mut self) {
         if let Some(words) = self.replaced.take() {
             tracing::warn!("{words}");
         }
@@ -62,7 +62,7 @@ impl Unfinished {
     }
 
     /// Ends a run whose folder cannot be made.
-    pub(super) fn flow(&self) -> ControlFlow<()> {
+    pub(in crate::app) fn flow(&self) -> ControlFlow<()> {
         match self.unwritable {
             Some(_) => ControlFlow::Break(()),
             None => ControlFlow::Continue(()),
@@ -70,7 +70,7 @@ impl Unfinished {
     }
 
     /// The folder, once the run has ended.
-    pub(super) fn made(mut self) -> Result<PathBuf, WriteError> {
+    pub(in crate::app) fn made(mut self) -> Result<PathBuf, WriteError> {
         self.begin();
         match self.unwritable {
             Some(error) => Err(error),
@@ -80,7 +80,7 @@ impl Unfinished {
 
     /// Writes the iterate, when it is time and it is as good as the one written before: `violation` is that of its equations and
     /// limits.
-    pub(super) fn consider(
+    pub(in crate::app) fn consider(
         &mut self,
         violation: f64,
         write: impl FnOnce(&Path) -> Result<(), WriteError>,
@@ -99,17 +99,17 @@ impl Unfinished {
 }
 
 /// The results of a folder are complete: nothing is unfinished, of this run or an earlier one.
-pub(super) fn done(folder: &Path) {
+pub(in crate::app) fn done(folder: &Path) {
     solution_file::remove(&folder.join(solution_file::UNFINISHED));
     fs::remove_file(folder.join(resume_file::UNFINISHED)).ok();
 }
 
 /// Receives iterates with the number of their intervals, and says whether to go on.
-pub(super) type Observe<'a> = &'a mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>;
+pub(in crate::app) type Observe<'a> = &'a mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>;
 
 /// Solves what was `read` from files in some seconds; `keep` writes the motions of an iterate, the first of them at a path. Returns the result and the
 /// folder that was made.
-pub(super) fn solve<R>(
+pub(in crate::app) fn solve<R>(
     request: &CommandInput,
     read: f64,
     observer: &mut dyn FnMut(Reached<'_>),

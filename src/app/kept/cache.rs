@@ -1,7 +1,9 @@
 //! Skips a run whose complete result exists.
 
 use crate::app::error::CommandError;
-use crate::app::record::{Ending, FileRecords, FolderRecord, Found, OF_RUN, digest, digest_of};
+use crate::app::kept::record::{
+    Ending, FileRecords, FolderRecord, Found, OF_RUN, digest, digest_of,
+};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::{read, run};
 use crate::control::problem::{Control, Guess, Task};

@@ -10,17 +10,21 @@ use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
 
 /// The file of a result.
-pub(super) const NAME: &str = "solution.json";
+pub(in crate::app) const NAME: &str = "solution.json";
 /// Its arrays.
-pub(super) const ARRAYS: &str = "solution.npz";
+pub(in crate::app) const ARRAYS: &str = "solution.npz";
 /// The file of a solve that has not ended.
-pub(super) const UNFINISHED: &str = "unfinished.json";
+pub(in crate::app) const UNFINISHED: &str = "unfinished.json";
 
 /// Writes a solution as files of a result.
 ///
 /// # Errors
 /// A file cannot be written.
-pub(super) fn add(files: &mut FileSet, model: &Model, solved: &Solution) -> Result<(), WriteError> {
+pub(in crate::app) fn add(
+    files: &mut FileSet,
+    model: &Model,
+    solved: &Solution,
+) -> Result<(), WriteError> {
     let texts = solution::written(model, solved, ARRAYS);
     let Written { json, arrays } = texts.map_err(WriteError::at(files.folder().join(ARRAYS)))?;
     match arrays {
@@ -36,7 +40,11 @@ pub(super) fn add(files: &mut FileSet, model: &Model, solved: &Solution) -> Resu
 ///
 /// # Errors
 /// A file cannot be written.
-pub(super) fn replace(path: &Path, model: &Model, solved: &Solution) -> Result<(), WriteError> {
+pub(in crate::app) fn replace(
+    path: &Path,
+    model: &Model,
+    solved: &Solution,
+) -> Result<(), WriteError> {
     let before = solution::file_beside(path).map(|name| path.with_file_name(name));
     let [first, second] = arrays_beside(path);
     let beside = match before.as_ref() == Some(&first) {
@@ -53,7 +61,7 @@ pub(super) fn replace(path: &Path, model: &Model, solved: &Solution) -> Result<(
 }
 
 /// Removes a solution that stands by itself.
-pub(super) fn remove(path: &Path) {
+pub(in crate::app) fn remove(path: &Path) {
     fs::remove_file(path).ok();
     for arrays in arrays_beside(path) {
         fs::remove_file(arrays).ok();

@@ -12,7 +12,7 @@ use crate::stop::TimeLimit;
 use crate::workflow::effects::Plan;
 
 /// Files that an earlier result of the folder may have.
-pub(super) const EARLIER: [&str; 29] = [
+pub(in crate::app) const EARLIER: [&str; 29] = [
     "body_forces.svg",
     "charge.svg",
     "charges.svg",
@@ -45,13 +45,13 @@ pub(super) const EARLIER: [&str; 29] = [
 ];
 
 /// Statuses of a run that was stopped.
-pub(super) const STOPPED: [&str; 2] = ["interrupted", "time_limit"];
+pub(in crate::app) const STOPPED: [&str; 2] = ["interrupted", "time_limit"];
 
 /// Most unknowns of a run that was stopped whose effects are counted: those of 10⁶ take several seconds.
 const COUNTED: usize = 100_000;
 
 /// The plan of a model; where a large one was stopped, without effects and with words that say so.
-pub(super) fn plan(model: &Model, was_stopped: bool) -> (Plan, Option<String>) {
+pub(in crate::app) fn plan(model: &Model, was_stopped: bool) -> (Plan, Option<String>) {
     match was_stopped && model.variables.unknown_count() > COUNTED {
         true => {
             let words = "effects are not counted: the run was stopped";
@@ -62,13 +62,18 @@ pub(super) fn plan(model: &Model, was_stopped: bool) -> (Plan, Option<String>) {
 }
 
 /// The limit of writing, of a run that began at a time.
-pub(super) fn time_to_write(request: &CommandInput, began: Instant) -> TimeLimit {
+pub(in crate::app) fn time_to_write(request: &CommandInput, began: Instant) -> TimeLimit {
     let spent = began.elapsed().as_secs_f64();
     TimeLimit::with_grace(request.max_seconds.map(|seconds| seconds - spent))
 }
 
 /// Makes a result one whose writing was stopped: the first `kept` files alone, a warning, and the status where it has no message of another.
-pub(super) fn leave_out(summary: &mut Summary, stopped: Status, files: &mut FileSet, kept: usize) {
+pub(in crate::app) fn leave_out(
+    summary: &mut Summary,
+    stopped: Status,
+    files: &mut FileSet,
+    kept: usize,
+) {
     files.truncate(kept);
     EARLIER.iter().for_each(|name| files.remove(name));
     fields::remove_from(0, files);

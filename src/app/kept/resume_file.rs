@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use crate::app::error::CommandError;
-use crate::app::record::digest;
+use crate::app::kept::record::digest;
+use crate::app::kept::solution_file;
 use crate::app::request::CommandInput;
-use crate::app::solution_file;
 use crate::control::problem::{Simulation, Task};
 use crate::dynamics::DiscreteTrajectory;
 use crate::files::continuation::{Continuation, bytes, read};
@@ -19,8 +19,8 @@ use crate::report::quoting;
 use crate::workflow::integrate::grid;
 
 /// A simulation that has ended, and one that has not.
-pub(super) const ENDED: &str = "continuation.npz";
-pub(super) const UNFINISHED: &str = "unfinished.npz";
+pub(in crate::app) const ENDED: &str = "continuation.npz";
+pub(in crate::app) const UNFINISHED: &str = "unfinished.npz";
 /// Digits of the hash of a problem with the files that it names.
 const DIGITS: usize = 32;
 /// Steps that differ by no more than this part are equal.
@@ -32,7 +32,7 @@ fn wrong(reason: String) -> CommandError {
 }
 
 /// The JSON text of a simulation without its end: a motion can be resumed where this is the same.
-pub(super) fn asked(loaded: &Loaded, task: &Simulation) -> String {
+pub(in crate::app) fn asked(loaded: &Loaded, task: &Simulation) -> String {
     let mut task = task.clone();
     task.duration = 0.0;
     if task.tolerance.is_some() {
@@ -52,7 +52,7 @@ pub(super) fn asked(loaded: &Loaded, task: &Simulation) -> String {
 ///
 /// # Errors
 /// There is none, or it is one of another problem.
-pub(super) fn begun(
+pub(in crate::app) fn begun(
     folder: &Path,
     asked: &str,
     task: &Simulation,
@@ -96,7 +96,7 @@ pub(super) fn begun(
 }
 
 /// Adds the state from which a motion of the problem `asked` can be resumed to the files of a result; none where it cannot be.
-pub(super) fn add(
+pub(in crate::app) fn add(
     files: &mut FileSet,
     discrete: &DiscreteTrajectory,
     asked: Option<&str>,
@@ -115,7 +115,7 @@ pub(super) fn add(
 }
 
 /// Replaces the state of a motion that has not ended.
-pub(super) fn replace(
+pub(in crate::app) fn replace(
     path: &Path,
     discrete: &DiscreteTrajectory,
     asked: &str,
@@ -165,7 +165,7 @@ fn first(a: &Value, b: &Value, path: &str) -> Option<String> {
 ///
 /// # Errors
 /// There is none.
-pub(super) fn solution(folder: &Path) -> Result<PathBuf, CommandError> {
+pub(in crate::app) fn solution(folder: &Path) -> Result<PathBuf, CommandError> {
     let paths = [solution_file::UNFINISHED, solution_file::NAME].map(|name| folder.join(name));
     let found = paths.into_iter().find(|path| path.is_file());
     let folder = folder.display();
@@ -173,7 +173,7 @@ pub(super) fn solution(folder: &Path) -> Result<PathBuf, CommandError> {
 }
 
 /// The command that resumes a run that was stopped.
-pub(super) fn command(request: &CommandInput, task: &Task) -> Option<String> {
+pub(in crate::app) fn command(request: &CommandInput, task: &Task) -> Option<String> {
     let command = match task {
         Task::Control(_) | Task::Motions(_) => "solve",
         Task::Simulate(_) => "simulate",
