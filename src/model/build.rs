@@ -114,13 +114,9 @@ impl Model {
         let spans = construction.spans(&mut vectors);
         let (intervals, made) = construction.sums(&spans, &variables, &mut vectors);
         let markers = construction.markers(&mut vectors);
-        let measures = construction.measures(
-            &variables,
-            &markers,
-            &intervals,
-            &made.present,
-            &mut vectors,
-        );
+        let present = &made.present;
+        let measures =
+            construction.measures(&variables, &markers, &intervals, present, &mut vectors);
         let list = vectors.list();
         let map = construction.coordinate_map(list, made.multipliers.len());
         let scalars = variables.of(Time::Interval).len();

@@ -40,7 +40,7 @@ impl<'a> Scope<'a> {
         Self { place, ..*self }
     }
 
-    /// What is made of each entry of a list here.
+    /// Makes a value of each entry of a list here.
     pub(crate) fn each<S, T, C: FromIterator<T>>(
         &self,
         list: &[S],
