@@ -22,6 +22,7 @@ fn attribute(tag: &str, name: &str) -> String {
         ("&lt;", "<"),
         ("&gt;", ">"),
         ("&quot;", "\""),
+        ("&#39;", "'"),
         ("&amp;", "&"),
     ];
     entities
