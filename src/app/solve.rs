@@ -196,7 +196,7 @@ impl Solved<'_> {
             .plots
             .push(convergence(&optimum.solution.iterations));
         let list = &result.sensitivities;
-        let bars = sensitivities::bars(list).map(|plot| ("Sensitivities", plot));
+        let bars = sensitivities::bars_of_page(list).map(|plot| ("Sensitivities", plot));
         let voltages = sensitivities::voltages(&model.system, &result.trajectory, list);
         let voltages = voltages.map(|plot| ("Voltages with tolerances", plot));
         let plots = bars.into_iter().chain(voltages);
@@ -252,8 +252,8 @@ fn write_sensitivities(
     }
     let text = sensitivities::table(system, &result.trajectory, list, origin);
     files.add("sensitivities.csv", text.as_bytes())?;
-    if let Some(plot) = sensitivities::bars(list) {
-        files.add("sensitivities.svg", plot.svg(origin).as_bytes())?;
+    if let Some(svg) = sensitivities::svg(list, origin) {
+        files.add("sensitivities.svg", svg.as_bytes())?;
     }
     if let Some(plot) = sensitivities::voltages(system, &result.trajectory, list) {
         files.add("voltages_tolerances.svg", plot.svg(origin).as_bytes())?;

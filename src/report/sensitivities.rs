@@ -4,6 +4,7 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::model::System;
 use crate::model::system::InputKind;
 use crate::report::axes::{Axis, Extent};
+use crate::report::canvas::{self, Align, Canvas, Stroke, text_width};
 use crate::report::lines::{LinePlot, Series};
 use crate::report::origin::Origin;
 use crate::report::style::{self, Dash};
@@ -66,45 +67,121 @@ pub fn table(
     csv(&line, header.into_iter(), rows)
 }
 
-/// `sensitivities.svg`: changes of the objective with the tolerances, to both sides, the greatest on top; none without tolerances.
-pub fn bars(list: &[Sensitivity]) -> Option<LinePlot> {
-    let change = |one: &Sensitivity| {
-        let size = one.varied.tolerance?;
-        Some((one.varied.name.clone(), one.objective * size))
-    };
-    let mut bars: Vec<(String, f64)> = list.iter().filter_map(change).collect();
-    bars.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()));
-    let named = bars.iter().flat_map(|(name, _)| {
-        let gaps = [String::new(), String::new()];
-        [name.clone()].into_iter().chain(gaps)
-    });
-    let side = |sign: f64, name: &str, colour| {
-        let bar = |(row, (_, change)): (usize, &(String, f64))| {
-            let y = -(row as f64) - 1.0;
-            [[0.0, y], [sign * change, y], [f64::NAN, y]]
-        };
-        let points = bars.iter().enumerate().flat_map(bar).collect();
-        Series {
-            width: BAR,
-            ..Series::curve(name, points, colour)
-        }
-    };
-    let above = side(1.0, "with the number + tolerance", style::hue(0));
-    let below = side(-1.0, "with the number − tolerance", style::hue(1));
-    let plot = LinePlot {
-        frame: [360.0, ROW * (bars.len() as f64 + 1.0)],
-        ..LinePlot::new(
-            Axis::linear("change of the objective", Extent::Padded),
-            Axis::linear("", Extent::Padded),
-            vec![above.labelled(named.collect()), below],
-        )
-    };
-    (!bars.is_empty()).then_some(plot)
+/// A change of the objective with the tolerance of a number, to first order.
+#[derive(Clone, Copy, Debug)]
+struct Bar<'a> {
+    name: &'a str,
+    /// With the number greater by its tolerance.
+    change: f64,
 }
 
-/// Height of a bar and distance of bars in pt.
-const BAR: f64 = 7.0;
-const ROW: f64 = 26.0;
+/// Bars of numbers that have a tolerance, the longest first.
+fn bars(list: &[Sensitivity]) -> Vec<Bar<'_>> {
+    let bar = |one: &'_ Sensitivity| one.varied.tolerance.map(|size| one.objective * size);
+    let all = list.iter().filter_map(|one| Some((one, bar(one)?)));
+    let mut bars: Vec<Bar<'_>> = all
+        .map(|(one, change)| Bar {
+            name: &one.varied.name,
+            change,
+        })
+        .collect();
+    bars.sort_by(|a, b| b.change.abs().total_cmp(&a.change.abs()));
+    bars
+}
+
+/// Width of the frame, height of a bar and distance of bars in pt.
+const FRAME: f64 = 360.0;
+const BAR: f64 = 13.0;
+const ROW: f64 = 21.0;
+/// Margin above the frame for the legend, below it for the axis, and to its right.
+const MARGIN: [f64; 3] = [30.0, 44.0, 24.0];
+
+/// `sensitivities.svg`: changes of the objective with the tolerances, the greatest on top; none without tolerances.
+pub fn svg(list: &[Sensitivity], origin: &Origin) -> Option<String> {
+    let bars = bars(list);
+    if bars.is_empty() {
+        return None;
+    }
+    let names = bars
+        .iter()
+        .map(|bar| text_width(bar.name, style::TICK_SIZE));
+    let left = names.fold(60.0, f64::max) + 16.0;
+    let height = ROW * bars.len() as f64 + 6.0;
+    let size = [left + FRAME + MARGIN[2], MARGIN[0] + height + MARGIN[1]];
+    Some(canvas::svg(size, origin, |canvas| {
+        draw(canvas, &bars, left, height);
+    }))
+}
+
+fn draw(canvas: &Canvas<'_>, bars: &[Bar<'_>], left: f64, height: f64) {
+    let axis = Axis::linear("change of the objective", Extent::Padded);
+    let range = axis.range(bars.iter().flat_map(|bar| [-bar.change, bar.change]));
+    let at = |value: f64| left + FRAME * (value - range[0]) / (range[1] - range[0]);
+    let (top, bottom) = (MARGIN[0], MARGIN[0] + height);
+    for (position, label) in axis.ticks(range, 5.0).major {
+        let x = at(position);
+        canvas.line(&[[x, top], [x, bottom]], Stroke::solid(style::GRID, 0.6));
+        canvas.line(
+            &[[x, bottom], [x, bottom + 4.0]],
+            Stroke::solid(style::INK, 0.8),
+        );
+        let place = [x, bottom + 13.0];
+        canvas.text(place, &label, style::TICK_SIZE, Align::Centre);
+    }
+    let sides = [
+        (1.0, style::hue(0), "with the number + tolerance"),
+        (-1.0, style::hue(1), "with the number − tolerance"),
+    ];
+    for (row, bar) in bars.iter().enumerate() {
+        let middle = top + 3.0 + ROW * (row as f64 + 0.5);
+        for (sign, colour, _) in sides {
+            let [a, b] = [at(0.0), at(sign * bar.change)];
+            let (up, down) = (middle - BAR / 2.0, middle + BAR / 2.0);
+            canvas.fill(&[[a, up], [b, up], [b, down], [a, down]], colour, 0.85);
+        }
+        let place = [left - 8.0, middle];
+        canvas.text(place, bar.name, style::TICK_SIZE, Align::Right);
+    }
+    let corners = [
+        [left, top],
+        [left + FRAME, top],
+        [left + FRAME, bottom],
+        [left, bottom],
+    ];
+    canvas.outline(&corners, Stroke::solid(style::INK, 0.8));
+    canvas.line(
+        &[[at(0.0), top], [at(0.0), bottom]],
+        Stroke::solid(style::INK, 0.8),
+    );
+    let middle = [left + FRAME / 2.0, bottom + 31.0];
+    canvas.text(middle, &axis.label, style::LABEL_SIZE, Align::Centre);
+    let mut x = left;
+    for (_, colour, words) in sides {
+        let square = [[x, 10.0], [x + 10.0, 10.0], [x + 10.0, 20.0], [x, 20.0]];
+        canvas.fill(&square, colour, 0.85);
+        canvas.text([x + 15.0, 15.0], words, style::TICK_SIZE, Align::Left);
+        x += 30.0 + text_width(words, style::TICK_SIZE);
+    }
+}
+
+/// The same as a plot of the page.
+pub fn bars_of_page(list: &[Sensitivity]) -> Option<LinePlot> {
+    let bars = bars(list);
+    let bar = |(row, bar): (usize, &Bar<'_>)| {
+        let y = -(row as f64) - 1.0;
+        let points = vec![[-bar.change.abs(), y], [bar.change.abs(), y]];
+        Series {
+            width: 6.0,
+            ..Series::curve(bar.name, points, style::hue(row))
+        }
+    };
+    let plot = LinePlot::new(
+        Axis::linear("change of the objective with ± tolerance", Extent::Padded),
+        Axis::linear("", Extent::Padded),
+        bars.iter().enumerate().map(bar).collect(),
+    );
+    (!bars.is_empty()).then_some(plot)
+}
 
 /// Voltages over time in s, each between two dashed lines: all numbers may be wrong by their tolerances at once; none without tolerances.
 pub fn voltages(
@@ -146,7 +223,13 @@ pub fn voltages(
     }
     let has_any = list.iter().any(|one| one.varied.tolerance.is_some()) && !series.is_empty();
     has_any.then(|| {
-        let label = format!("{} [{unit}], ± all tolerances", kind.name());
-        LinePlot::over_time(label, series)
+        LinePlot::new(
+            Axis::linear("time [s]", Extent::Tight),
+            Axis::linear(
+                format!("{} [{unit}], ± all tolerances", kind.name()),
+                Extent::Padded,
+            ),
+            series,
+        )
     })
 }

@@ -91,8 +91,8 @@ fn write(
         let title = judged.measure.label().to_owned();
         plots.extend(plot.map(|plot| (title, plot)));
     }
-    let points = table::text(results, judged);
-    let text = format!("{points}\n{}", cost_table(results, judged));
+    let (points, costs) = (table::text(results, judged), cost_table(results, judged));
+    let text = format!("{points}\n{costs}");
     put("table.txt", &text)?;
     put("table.csv", &table::csv(results, judged, &origin))?;
     let page = page::markdown(results, judged, &figures, said, &points, &origin);
@@ -110,7 +110,10 @@ fn write(
             .collect(),
         rows: Vec::new(),
         plots,
-        documents: vec![("All points".to_owned(), text.clone())],
+        documents: vec![
+            ("What accuracy costs".to_owned(), costs),
+            ("All points".to_owned(), points),
+        ],
     };
     put(
         "report.html",
