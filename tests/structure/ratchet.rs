@@ -6,8 +6,8 @@ use std::collections::BTreeMap;
 /// Most lines, by fifties, and most files of each folder of `src`; the first is what lies above all folders.
 const SIZES: [(&str, usize, usize); 26] = [
     (".", 1450, 8),
-    ("app", 9250, 43),
-    ("control", 10150, 46),
+    ("app", 9300, 44),
+    ("control", 10150, 47),
     ("coordinates", 3500, 18),
     ("dynamics", 11050, 41),
     ("element", 3600, 16),
@@ -24,7 +24,7 @@ const SIZES: [(&str, usize, usize); 26] = [
     ("mesh", 1750, 12),
     ("model", 13100, 62),
     ("nlp", 1900, 7),
-    ("report", 6550, 34),
+    ("report", 6650, 34),
     ("sensitivity", 2650, 8),
     ("sparse", 8050, 34),
     ("study", 2500, 11),

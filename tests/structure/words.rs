@@ -65,8 +65,8 @@ const WORDS: [Retired; 21] = [
 
 /// Retired paths below `src`, without `.rs`, and those in their place.
 const PATHS: [(&str, &str); 53] = [
-    ("app/continuation", "app/resume_file"),
-    ("app/digest", "app/record"),
+    ("app/continuation", "app/kept/resume_file"),
+    ("app/digest", "app/kept/record"),
     ("app/exchanged", "app/blocks"),
     ("app/extent", "app/inspect"),
     ("app/followed", "app/equilibrium_summary"),

@@ -1,7 +1,7 @@
 //! One sweep over the horizon: forces, and second derivatives into the values.
 
 use crate::control::transcription::Transcription;
-use crate::control::transcription::costs::MILLISECOND;
+use crate::control::transcription::cost_rows::MILLISECOND;
 use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::Site;
 use crate::control::transcription::segment::{

@@ -11,6 +11,7 @@
 //! and one that every evaluation changes, `workspace`. Its methods are in `program` (the trait [`Nlp`]), `point`, `interval_pass`, `scaling`,
 //! `costs` and `update_endpoints`.
 
+mod cost_rows;
 mod costs;
 mod energy_rows;
 mod interval_pass;

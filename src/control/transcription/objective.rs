@@ -3,7 +3,7 @@
 use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::objective::Cost;
 use crate::control::problem::Control;
-use crate::control::transcription::costs::{CostRow, cost_rows};
+use crate::control::transcription::cost_rows::{CostRow, cost_rows};
 use crate::control::transcription::energy_rows::{EnergyRow, energy_rows};
 use crate::control::transcription::layout::Layout;
 use crate::model::{Model, Time, Variable};

@@ -3,7 +3,7 @@
 use crate::control::limit::{BoundedQuantity, When};
 use crate::control::numbering::{Column, Row};
 use crate::control::transcription::Transcription;
-use crate::control::transcription::costs::MILLISECOND;
+use crate::control::transcription::cost_rows::MILLISECOND;
 use crate::control::transcription::limit_rows::Site;
 use crate::control::transcription::objective::Objective;
 use crate::control::transcription::workspace::Workspace;

@@ -4,7 +4,7 @@
 //! carried blocks are added when both are done. Where stretches meet depends on the number of intervals only, so results
 //! are the same for any number of threads.
 
-use crate::control::transcription::costs::{CostRow, fill_costs};
+use crate::control::transcription::cost_rows::{CostRow, fill_costs};
 use crate::control::transcription::energy_rows::{EnergyRow, fill_energies};
 use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::{LimitRow, Site, fill_limits};

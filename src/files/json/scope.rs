@@ -247,7 +247,7 @@ macro_rules! refuse {
 }
 pub(crate) use refuse;
 
-/// What is made of the one of some entries of an object that is there, at its place.
+/// Makes a value of the one of some entries of an object that is there, at its place.
 macro_rules! the_one {
     ($at:expr, $of:expr; $($key:literal $entry:ident |$place:pat_param, $one:pat_param| $made:expr;)+) => {{
         $at.one_key([$(($key, $of.$entry.is_some())),+])?;
