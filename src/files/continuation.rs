@@ -41,7 +41,7 @@ pub enum ContinuationError {
     Missing(&'static str),
 }
 
-/// What is read of a file, or why it is no continuation.
+/// The content of a file, or why it is no continuation.
 type Result<T, E = ContinuationError> = std::result::Result<T, E>;
 
 /// The bytes of a file.

@@ -89,7 +89,7 @@ pub fn cost_table(results: &Results<'_>, judged: &[Judged]) -> String {
     aligned(&rows)
 }
 
-/// What is not resolved of a measure of a method.
+/// The parts of a measure of a method that are not resolved.
 fn status(results: &Results<'_>, judged: &Judged, method: usize) -> String {
     let points = &results.methods[method];
     let count = |is: fn(&Done<'_>) -> bool| points.iter().filter(|done| is(done)).count();

@@ -24,6 +24,7 @@ mod point;
 mod program;
 mod scaling;
 mod segment;
+mod start_momentum;
 pub(super) mod structure;
 mod update_endpoints;
 mod workspace;
@@ -41,8 +42,8 @@ use layout::Layout;
 pub use layout::Outline;
 pub(super) use limit_rows::Site;
 use objective::Objective;
+use start_momentum::StartMomentum;
 use structure::{Structure, overdetermined};
-use update_endpoints::StartMomentum;
 use workspace::Workspace;
 
 /// A control problem as a nonlinear program.

@@ -70,7 +70,7 @@ impl<'a> At<'a> {
         self.inside(self.scope.index(index))
     }
 
-    /// What is made of each entry of a list here.
+    /// Makes a value of each entry of a list here.
     pub(crate) fn each<S, T, C: FromIterator<T>>(
         &self,
         list: &[S],
@@ -80,7 +80,7 @@ impl<'a> At<'a> {
         list.iter().enumerate().map(make).collect()
     }
 
-    /// What is made of each entry of an object here by its name.
+    /// Makes a value of each entry of an object here by its name.
     pub(crate) fn each_named<'s, S: 's, T, C: FromIterator<T>>(
         &self,
         map: impl IntoIterator<Item = (&'s String, &'s S)>,

@@ -31,7 +31,7 @@ read_objects! {
     }
 }
 
-/// What waypoints are on the way of.
+/// The motion that waypoints are on the way of.
 #[derive(Clone, Copy)]
 pub(crate) struct Course {
     pub(crate) duration: Duration,

@@ -117,7 +117,7 @@ pub struct SolutionError {
     pub reason: Reason,
 }
 
-/// What is read of a file, or why it is no solution.
+/// The content of a file, or why it is no solution.
 pub(super) type Result<T, E = Reason> = std::result::Result<T, E>;
 
 /// Reason why a file is no solution of a scene.
