@@ -41,7 +41,7 @@ def test_notebooks_run(path: Path) -> None:
 
     def outputs(notebook: nbformat.NotebookNode) -> list[list[str]]:
         cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
-        return [sorted(output.output_type for output in cell.outputs) for cell in cells]
+        return [sorted({output.output_type for output in cell.outputs}) for cell in cells]
 
-    # The saved ones are those of this code.
+    # The saved ones are those of this code; a kernel may split what is printed into several messages.
     assert outputs(run) == outputs(kept) and sum(map(len, outputs(run))) > 3
