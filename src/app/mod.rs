@@ -4,10 +4,11 @@
 //! - `batch`: several solves in parallel, in threads or processes; `multistart`: a control problem from several guesses.
 //! - `inspect`, `templates`: the other commands; `program`: entry points for other languages in place of files.
 //! - `kept`: results in their folders, found again and gone on from.
-//! - `summary`: `summary.json`; `feedback_files`, `fields`: files of gains and of elastic blocks; figures, tables and page are written by [`report`](crate::report).
+//! - `summary`: `summary.json`; `feedback_files`, `fields`: files of gains and of elastic blocks; [`report`](crate::report) writes figures, tables and
+//!   page.
 //! - `displayed_motion`: part of a motion that tables, figures and page show.
-//! - `blocks`, `comparison`, `linear_systems`, `solve_summary`, `equilibrium_summary`, `sensitivity_summary`, `identification_summary`, `identification_verdict`,
-//!   `no_equilibrium`: texts about a result.
+//! - `blocks`, `comparison`, `linear_systems`, `solve_summary`, `equilibrium_summary`, `sensitivity_summary`, `identification_summary`,
+//!   `identification_verdict`, `no_equilibrium`: texts about a result.
 //! - `progress`, `request`, `error`: common parts of commands.
 
 mod batch;

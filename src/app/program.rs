@@ -254,8 +254,8 @@ impl<'h> SiController<'h> {
         }
     }
 
-    /// The inputs that act from a time in s on, or the delay of the feedback later, with what is measured there; none where it did not come in time. Called again within an interval, or at
-    /// a time that is no finite number, it gives the same inputs.
+    /// The inputs that act from a time in s on, or the delay of the feedback later, with what is measured there; `None` where the measurement did
+    /// not come in time. A call in the same interval, or at a time that is no finite number, gives the same inputs.
     ///
     /// # Panics
     /// If there are more or fewer numbers than are measured.

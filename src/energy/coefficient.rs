@@ -48,22 +48,24 @@ impl Coefficient {
     }
 
     /// Its value at parameters.
+    #[inline(always)]
     pub fn at<T: Number>(&self, parameters: &[T]) -> T {
         self.of(&|place| parameters[place])
     }
 
-    /// Its value at the parameters of places.
+    /// Its value at the parameters of places. Formulas ask for it in each evaluation: most are numbers.
+    #[inline(always)]
     pub fn of<T: Number>(&self, parameter: &impl Fn(usize) -> T) -> T {
         match self {
             Self::Number(value) => T::of(*value),
-            Self::Parameter(place, [a, b, c, d]) => {
-                let value = parameter(*place);
-                let line = value.scaled(*b).shifted(*a);
-                match [*c, *d] == [0.0; 2] {
-                    true => line,
-                    false => line + value * value * value.scaled(*d).shifted(*c),
-                }
-            }
+            Self::Parameter(place, powers) => polynomial(parameter(*place), powers),
+            combined => combined.combination(parameter),
+        }
+    }
+
+    /// The value of a sum, product, quotient or root.
+    fn combination<T: Number>(&self, parameter: &impl Fn(usize) -> T) -> T {
+        match self {
             Self::Sum(of) => of[0].of(parameter) + of[1].of(parameter),
             Self::Product(of) => match of[1] {
                 Self::Number(factor) => of[0].of(parameter).scaled(factor),
@@ -71,7 +73,18 @@ impl Coefficient {
             },
             Self::Quotient(of) => of[0].of(parameter).over(of[1].of(parameter)),
             Self::Root(of) => of.of(parameter).sqrt(),
+            Self::Number(_) | Self::Parameter(..) => self.of(parameter),
         }
+    }
+}
+
+/// `a + b π + c π² + d π³`.
+#[inline(always)]
+fn polynomial<T: Number>(value: T, [a, b, c, d]: &[f64; 4]) -> T {
+    let line = value.scaled(*b).shifted(*a);
+    match [*c, *d] == [0.0; 2] {
+        true => line,
+        false => line + value * value * value.scaled(*d).shifted(*c),
     }
 }
 

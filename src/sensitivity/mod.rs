@@ -9,11 +9,12 @@
 //! ```
 //!
 //! factorised once, with one back-substitution for each p. The matrix has to have as many negative eigenvalues as equations and none that is zero:
-//! then the optimum is strict, and its derivatives exist (Fiacco, 1983). They hold as long as the same bounds are reached: `range` tells how far,
+//! then the optimum is strict, and its derivatives exist (Fiacco, 1983). They hold as long as the same bounds are reached: `margins` tells how far,
 //! to first order.
 //!
-//! `kernel` knows any [`Nlp`](crate::nlp::Nlp), `conditions` what holds at its optimum with the bounds that are reached, and its linear system. `optimum` is the front for control problems: `with_parameters` their program in which constants, start and goal are columns that are held,
-//! `directions` what changes with each number. `check` refuses numbers before the solve.
+//! `kernel` knows any [`Nlp`](crate::nlp::Nlp), `conditions` the bounds that its optimum reaches and its linear system. `optimum` is the front for
+//! control problems: `with_parameters` has their program, in which constants, start and goal are columns that are held, and `directions` the changes
+//! with each number. `check` refuses numbers before the solve.
 
 mod check;
 mod conditions;

@@ -106,12 +106,18 @@ fn solve_task(
         notes,
     } = solve_and_hold(task, request, observer)?;
     let each = task.motions.iter().zip(&controls).zip(found.optima);
-    let notes = found.notes.into_iter().zip(notes);
-    let list = each
-        .zip(notes)
-        .map(|(((motion, control), optimum), notes)| {
-            assessed(motion.system, control, optimum, found.iterations, notes)
-        });
+    let each = each.zip(found.notes).zip(notes);
+    let iterations = found.iterations;
+    let list = each.map(|((((motion, control), optimum), refined), not_found)| {
+        assessed(
+            motion.system,
+            control,
+            optimum,
+            iterations,
+            refined,
+            not_found,
+        )
+    });
     let list: Vec<SolveResult> = list.collect();
     let whole = found.whole;
     let mut remarks = Remarks::default();
@@ -137,7 +143,8 @@ fn assessed(
     control: &Control,
     optimum: Optimum,
     iterations: usize,
-    (refined, not_found): (Option<String>, Option<String>),
+    refined: Option<String>,
+    not_found: Option<String>,
 ) -> SolveResult {
     let (model, boundary) = (&optimum.model, &optimum.boundary);
     let tested = optimum.resimulation.as_ref();

@@ -1,7 +1,5 @@
-//! The solves of a program one after another: the first one, others with new charts of its rotations, others that confirm
-//! the objective.
-//!
-//! Distance of an objective from its least value nearby, and the solves that make it small.
+//! The solves of a program one after another: the first one, others with new charts of its rotations, others that make the distance of the objective
+//! from its least value nearby small.
 //!
 //! A solver of interior points ends where the optimality conditions hold to a tolerance that is relative to the size of the objective at the guess.
 //! Where the objective falls far below that, the tolerance may be as large as the objective. With the multipliers z of bounds at the distances d, y of

@@ -76,8 +76,8 @@ impl<'a> At<'a> {
         list: &[S],
         make: impl Fn(&S, &Self) -> Result<T>,
     ) -> Result<C> {
-        let make = |(index, one)| make(one, &self.index(index));
-        list.iter().enumerate().map(make).collect()
+        let make = |one: &S, entry: &Scope<'a>| make(one, &self.inside(entry.clone()));
+        self.scope.each(list, make)
     }
 
     /// Makes a value of each entry of an object here by its name.

@@ -3,7 +3,8 @@
 //! - `motions`: several motions of one problem, each as a problem of its own.
 //! - `build`: the problem; `control`, `simulation`, `identify`: its longer tasks; `channels`: what recordings measure; `changed_scenes`: scenes of some of them.
 //! - `feedback`: gains along an optimum, and a controller that reads them; `receding`: a problem that it plans anew; `disturbance`: the same simulation with parts of its disturbance.
-//! - `at`: places with their system; `state`, `end_of`, `goal`, `waypoints`, `quantities`, `free`, `sensitivity`, `loads`, `voltages`: their parts; `output`: what is written of a motion.
+//! - `at`: places with their system; `state`, `end_of`, `goal`, `waypoints`, `quantities`, `free`, `sensitivity`, `loads`, `voltages`:
+//!   their parts; `output`: what is written of a motion.
 
 pub mod at;
 pub(crate) mod build;

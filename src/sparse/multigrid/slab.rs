@@ -141,10 +141,10 @@ impl Equations<'_> {
             let first = self.first_place(slab, plane);
             let [lower, upper] = slab.swept(plane);
             for (place, node) in self.nodes(plane).enumerate() {
-                let x = (first + place, &slab.x.values[..]);
+                let (at, x) = (first + place, &slab.x.values[..]);
                 let mut sum = AtNode::default();
-                add_all(&mut sum, self.lower(node, lower..OWN), x);
-                add_all(&mut sum, self.upper(node, upper..OWN), x);
+                add_all(&mut sum, self.lower(node, lower..OWN), at, x);
+                add_all(&mut sum, self.upper(node, upper..OWN), at, x);
                 slab.x.values[first + place] = self.solved(node, &sum);
             }
         }
@@ -157,10 +157,10 @@ impl Equations<'_> {
             self.nodes(plane).map(move |node| (node, swept))
         });
         for ((node, [lower, upper]), residual) in nodes.zip(residual) {
-            let x = (node + x.margin, &x.values[..]);
+            let (at, x) = (node + x.margin, &x.values[..]);
             let mut sum = AtNode::default();
-            add_all(&mut sum, self.lower(node, 0..lower), x);
-            add_all(&mut sum, self.upper(node, 0..upper), x);
+            add_all(&mut sum, self.lower(node, 0..lower), at, x);
+            add_all(&mut sum, self.upper(node, 0..upper), at, x);
             *residual = sum.map(|s| -s);
         }
     }
@@ -169,11 +169,11 @@ impl Equations<'_> {
     pub(super) fn leave_all(&self, slab: &Slab, x: &Field, residual: &mut [AtNode]) {
         let nodes = slab.planes.clone().flat_map(|plane| self.nodes(plane));
         for (node, residual) in nodes.zip(residual) {
-            let x = (node + x.margin, &x.values[..]);
+            let (at, x) = (node + x.margin, &x.values[..]);
             let mut sum = AtNode::default();
-            add_all(&mut sum, self.lower(node, 0..OWN), x);
-            add(&mut sum, self.matrix.diagonal(node), &x.1[x.0]);
-            add_all(&mut sum, self.upper(node, 0..OWN), x);
+            add_all(&mut sum, self.lower(node, 0..OWN), at, x);
+            add(&mut sum, self.matrix.diagonal(node), &x[at]);
+            add_all(&mut sum, self.upper(node, 0..OWN), at, x);
             let rhs = self.rhs.values[node + self.rhs.margin];
             *residual = std::array::from_fn(|c| rhs[c] - sum[c]);
         }
@@ -184,10 +184,10 @@ impl Equations<'_> {
         for plane in slab.planes.clone().rev() {
             let first = self.first_place(slab, plane);
             for (place, node) in self.nodes(plane).enumerate().rev() {
-                let x = (first + place, &slab.x.values[..]);
+                let (at, x) = (first + place, &slab.x.values[..]);
                 let mut sum = AtNode::default();
-                add_all(&mut sum, self.upper(node, 0..OWN).rev(), x);
-                add_all(&mut sum, self.lower(node, 0..OWN).rev(), x);
+                add_all(&mut sum, self.upper(node, 0..OWN).rev(), at, x);
+                add_all(&mut sum, self.lower(node, 0..OWN).rev(), at, x);
                 slab.x.values[first + place] = self.solved(node, &sum);
             }
         }
@@ -207,7 +207,8 @@ type Coupling<'m> = (&'m Block, &'m isize);
 fn add_all<'m>(
     sum: &mut AtNode,
     couplings: impl Iterator<Item = Coupling<'m>>,
-    (at, x): (usize, &[AtNode]),
+    at: usize,
+    x: &[AtNode],
 ) {
     for (block, offset) in couplings {
         add(sum, block, &x[(at as isize + offset) as usize]);

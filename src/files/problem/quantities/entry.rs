@@ -55,8 +55,9 @@ impl Named<'_> {
         &self,
         word: &str,
         quantity: Quantity,
-        (kind, unit): (Kind, SiUnit),
+        unit: (Kind, SiUnit),
     ) -> Recorded {
+        let (kind, unit) = unit;
         Recorded {
             of: self.name.to_owned(),
             name: format!("{word} of {}", self.name),
