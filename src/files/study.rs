@@ -23,8 +23,7 @@ read_objects! {
         /// Path of the problem file, relative to this file.
         pub problem: String,
         /// Overrides of all points.
-        #[serde(default)]
-        pub set: ChangesSpec,
+        pub set?: ChangesSpec,
         /// The methods that are compared, a curve each.
         pub methods: Vec<MethodSpec>,
         /// Entry that is refined from point to point; a method may refine something else.
@@ -46,8 +45,7 @@ read_objects! {
         /// Path of another problem file, relative to the study.
         pub problem: Option<String>,
         /// Overrides of its points, after those of all points.
-        #[serde(default)]
-        pub set: ChangesSpec,
+        pub set?: ChangesSpec,
         /// Entry that it refines, in place of that of the study.
         pub refine: Option<RefineSpec>,
     }

@@ -20,13 +20,11 @@ read_objects! {
         /// Path of the problem file, relative to this file.
         pub problem: String,
         /// Overrides of all variants.
-        #[serde(default)]
-        pub set: ChangesSpec,
+        pub set?: ChangesSpec,
         /// Entries that vary, by their places in the problem, or in its scene after `scene.`.
         pub vary: BTreeMap<String, VarySpec>,
         /// Combination of the values; as a grid where not written.
-        #[serde(default)]
-        pub combine: CombineSpec,
+        pub combine?: CombineSpec,
         /// Path of a CSV file with a variant per line, in place of `vary`: its headers are places, its cells values.
         pub table: Option<String>,
     }
@@ -52,20 +50,18 @@ read_objects! {
         /// Number of values, both ends included; 2 or more. Not for values at random.
         pub count: Option<usize>,
         /// Spacing of the values; even where not written.
-        #[serde(default)]
-        pub spacing: SpacingSpec,
+        pub spacing?: SpacingSpec,
     }
-}
 
-/// Spacing of values.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum SpacingSpec {
-    /// Equal differences.
-    #[default]
-    Linear,
-    /// Equal ratios, of values above zero.
-    Logarithmic,
+    /// Spacing of values.
+    #[derive(Default)]
+    pub enum SpacingSpec {
+        /// Equal differences.
+        #[default]
+        Linear,
+        /// Equal ratios, of values above zero.
+        Logarithmic,
+    }
 }
 
 /// Combination of the values of several entries.

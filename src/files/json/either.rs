@@ -41,23 +41,6 @@ impl<'de, S: Deserialize<'de>, O: Deserialize<'de>, T> Visitor<'de> for Either<S
     }
 }
 
-/// Reads types by [`Either`].
-macro_rules! scalar_or_object {
-    ($($type:ty: $scalar:ty = $from_scalar:expr, $object:ty = $from_object:expr, $expected:literal;)*) => {$(
-        impl<'de> Deserialize<'de> for $type {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                deserializer.deserialize_any(Either::<$scalar, $object, Self> {
-                    expected: $expected,
-                    scalar: $from_scalar,
-                    object: $from_object,
-                })
-            }
-        }
-    )*};
-}
-
-pub(crate) use scalar_or_object;
-
 /// Visits `"auto"` or a value, which is a whole number or else a quantity.
 pub(crate) struct AutoOr<V, T> {
     /// Both, for messages.

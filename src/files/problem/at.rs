@@ -1,5 +1,6 @@
 //! A place in a problem, and the parts of the system whose names stand there.
 
+use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::graph::tree_freedoms;
@@ -9,8 +10,6 @@ use crate::files::units::quantity::{
 };
 use crate::model::system::{JointKind, Source, System, voltage_sources};
 use crate::model::{Coordinates, PartKind};
-use schemars::JsonSchema;
-use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::ops::Deref;
 use std::rc::Rc;
@@ -219,25 +218,19 @@ impl<'a> At<'a> {
 
     /// Coordinates of this task as they are written.
     pub(crate) fn coordinates(&self, spec: Option<CoordinatesSpec>) -> Result<Option<Coordinates>> {
-        let (bodies, joints) = (self.system.bodies.len(), &self.system.joints);
-        match spec {
-            None => Ok(None),
-            Some(CoordinatesSpec::Redundant) => Ok(Some(Coordinates::Redundant)),
-            Some(CoordinatesSpec::Reduced) if tree_freedoms(bodies, joints).is_none() => {
-                let found = "\"reduced\", though the joints close a loop";
-                Err(self.key("coordinates").wrong(found, "\"redundant\""))
-            }
-            Some(CoordinatesSpec::Reduced) => Ok(Some(Coordinates::Reduced)),
-        }
+        let is_tree = || tree_freedoms(self.system.bodies.len(), &self.system.joints).is_some();
+        refuse!(if spec == Some(CoordinatesSpec::Reduced) && !is_tree(), self.key("coordinates");
+            found "\"reduced\", though the joints close a loop", expected "\"redundant\"");
+        Ok(spec.map(Into::into))
     }
 }
 
-/// Coordinates in which a problem is solved; reduced where the joints form a tree, unless written.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum CoordinatesSpec {
-    /// Independent joint coordinates.
-    Reduced,
-    /// Directors with multipliers.
-    Redundant,
+read_objects! {
+    /// Coordinates in which a problem is solved; reduced where the joints form a tree, unless written.
+    pub enum CoordinatesSpec: Coordinates {
+        /// Independent joint coordinates.
+        Reduced,
+        /// Directors with multipliers.
+        Redundant,
+    }
 }

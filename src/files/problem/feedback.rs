@@ -253,8 +253,7 @@ read_objects! {
     #[derive(Default)]
     pub struct FeedbackSpec {
         /// Costs of deviations.
-        #[serde(default)]
-        pub weights: WeightsSpec,
+        pub weights?: WeightsSpec,
         /// Greatest length of the steps that are linearised, SI unit s; 1 ms where not written. Gains act over the intervals of the optimum.
         pub step: Option<Quantity<Time>>,
         /// Time from a measurement to its effect, over which the state is predicted, SI unit s, upwards to whole intervals; 0 where not written.
@@ -309,8 +308,7 @@ read_objects! {
         /// Time from a sample to its effect, a multiple of the step, SI unit s; that which the gains or plans predict where not written.
         pub delay: Option<Quantity<Time>>,
         /// Noise of what is measured.
-        #[serde(default)]
-        pub noise: NoiseSpec,
+        pub noise?: NoiseSpec,
         /// Simulations of parts of the disturbance too, for a slider on the page.
         pub disturbance: Option<DisturbanceSpec>,
     }
@@ -352,7 +350,6 @@ read_objects! {
         /// Of rates of lengths, SI unit m/s.
         pub velocity: Option<Quantity<Velocity>>,
         /// Seed of the numbers that are drawn; 0 where not written.
-        #[serde(default)]
-        pub seed: u64,
+        pub seed?: u64,
     }
 }

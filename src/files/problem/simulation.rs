@@ -3,8 +3,8 @@
 use crate::control::problem::Simulation;
 use crate::dynamics::{Integrator, MultigridUse, Newton, Solving};
 use crate::feedback::Law;
-use crate::files::json::either::{AutoOr, Either, scalar_or_object};
-use crate::files::json::objects::{meanings, read_objects};
+use crate::files::json::either::AutoOr;
+use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::{At, CoordinatesSpec};
 use crate::files::problem::feedback::{ControllerSpec, controller};
@@ -128,11 +128,9 @@ read_objects! {
         /// robot's size; 1e-3 where not written.
         pub tolerance: Option<f64>,
         /// Constant voltages, those of a solution, or a table; 0 where not written.
-        #[serde(default)]
-        pub voltages: VoltagesSpec,
+        pub voltages?: VoltagesSpec,
         /// Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
-        #[serde(default)]
-        pub loads: LoadMap,
+        pub loads?: LoadMap,
         /// A controller that gives the voltages which it has gains for.
         pub controller: Option<ControllerSpec>,
         /// Start of the motion; the reference configuration at rest where not written.
@@ -177,30 +175,56 @@ impl<'de> Deserialize<'de> for StepSpec {
     }
 }
 
-/// Occasions at which the tangent of a step is factorised.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum NewtonSpec {
-    /// In every iteration.
-    Full,
-    /// Modified Newton, only where the last factorisation converges too slowly: for large meshes, whose factorisation is the cost.
-    Modified,
-    /// The former name of `modified`.
-    Reused,
-}
+read_objects! {
+    /// Occasions at which the tangent of a step is factorised.
+    pub enum NewtonSpec: Newton {
+        /// In every iteration.
+        Full,
+        /// Modified Newton, only where the last factorisation converges too slowly: for large meshes, whose factorisation is the cost.
+        Modified,
+        /// The former name of `modified`.
+        Reused = Modified,
+    }
 
-/// Method by which linear systems with the tangent are solved.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum LinearSolverSpec {
-    /// The one that is fastest as a rule.
-    Auto,
-    /// LDLᵀ or LU of faer.
-    Faer,
-    /// LDLᵀ or LU of MUMPS.
-    Mumps,
-    /// GMRES with multigrid, for blocks beside which nothing moves.
-    Multigrid,
+    /// Method by which linear systems with the tangent are solved.
+    pub enum LinearSolverSpec {
+        /// The one that is fastest as a rule.
+        Auto,
+        /// LDLᵀ or LU of faer.
+        Faer,
+        /// LDLᵀ or LU of MUMPS.
+        Mumps,
+        /// GMRES with multigrid, for blocks beside which nothing moves.
+        Multigrid,
+    }
+
+    /// A method by its name.
+    pub enum IntegratorWord {
+        /// The midpoint variational integrator, order 2.
+        Midpoint,
+        /// Implicit Euler, order 1; damps.
+        ImplicitEuler,
+        /// Generalised α with the spectral radius 0.8, order 2; damps fast oscillations.
+        GeneralisedAlpha,
+    }
+
+    /// A method with its parameter: exactly one of the two.
+    pub struct IntegratorObject {
+        /// Degree, from 1 to 8, of a Galerkin variational integrator with Lobatto points, order 2 × degree.
+        pub galerkin: Option<usize>,
+        /// Spectral radius at infinity, from 0 to 1, of the generalised-α method.
+        pub generalised_alpha: Option<f64>,
+    }
+
+    /// A word or an object.
+    pub either IntegratorSpec(
+        "\"midpoint\", \"implicit_euler\", \"generalised_alpha\" or an object with \"galerkin\" or \"generalised_alpha\""
+    ) {
+        /// By name.
+        Word: IntegratorWord,
+        /// With its parameter.
+        Object: IntegratorObject,
+    }
 }
 
 impl LinearSolverSpec {
@@ -219,43 +243,6 @@ impl LinearSolverSpec {
 const HIGHEST: usize = 8;
 /// Spectral radius of the word alone.
 const RADIUS: f64 = 0.8;
-
-/// A method by its name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum IntegratorWord {
-    /// The midpoint variational integrator, order 2.
-    Midpoint,
-    /// Implicit Euler, order 1; damps.
-    ImplicitEuler,
-    /// Generalised α with the spectral radius 0.8, order 2; damps fast oscillations.
-    GeneralisedAlpha,
-}
-
-read_objects! {
-    /// A method with its parameter: exactly one of the two.
-    pub struct IntegratorObject {
-        /// Degree, from 1 to 8, of a Galerkin variational integrator with Lobatto points, order 2 × degree.
-        pub galerkin: Option<usize>,
-        /// Spectral radius at infinity, from 0 to 1, of the generalised-α method.
-        pub generalised_alpha: Option<f64>,
-    }
-}
-
-/// A word or an object.
-#[derive(Clone, Debug, JsonSchema)]
-#[serde(untagged)]
-pub enum IntegratorSpec {
-    /// By name.
-    Word(IntegratorWord),
-    /// With its parameter.
-    Object(IntegratorObject),
-}
-
-scalar_or_object! {
-    IntegratorSpec: IntegratorWord = Self::Word, IntegratorObject = Self::Object,
-        "\"midpoint\", \"implicit_euler\", \"generalised_alpha\" or an object with \"galerkin\" or \"generalised_alpha\"";
-}
 
 /// The method of a simulation.
 pub(crate) fn integrator(spec: Option<&IntegratorSpec>, at: &At<'_>) -> Result<Integrator> {
@@ -311,8 +298,4 @@ fn with_parameter(object: &IntegratorObject, at: &Scope<'_>) -> Result<Integrato
             at.one_key(there).map(|_| Integrator::Midpoint)
         }
     }
-}
-
-meanings! {
-    NewtonSpec: Newton { Full => Full, Modified => Modified, Reused => Modified, }
 }

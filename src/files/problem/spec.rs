@@ -1,11 +1,8 @@
 //! A problem as it is written: the serde types of the problem file.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 
-use crate::files::json::either::{Either, scalar_or_object};
-use crate::files::json::objects::{meanings, read_objects};
+use crate::files::json::objects::read_objects;
 use crate::files::problem::at::CoordinatesSpec;
 use crate::files::problem::feedback::FeedbackSpec;
 use crate::files::problem::output::OutputSpec;
@@ -43,8 +40,7 @@ read_objects! {
     /// A static equilibrium.
     pub struct EquilibriumSpec {
         /// Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
-        #[serde(default)]
-        pub voltages: VoltageMap,
+        pub voltages?: VoltageMap,
         /// Loads by name, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
         pub loads: BTreeMap<String, Quantity<LoadSize>>,
         /// Coordinates.
@@ -54,33 +50,22 @@ read_objects! {
         /// Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as pull-in.
         pub path: Option<usize>,
     }
-}
 
-/// Response of Maxwell branches to voltages and loads.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ResponseSpec {
-    /// After a long time: branches carry nothing.
-    #[default]
-    Relaxed,
-    /// At once: branches are springs without stress in the reference configuration.
-    Instantaneous,
-}
+    /// Response of Maxwell branches to voltages and loads.
+    #[derive(Default)]
+    pub enum ResponseSpec: Response {
+        /// After a long time: branches carry nothing.
+        #[default]
+        Relaxed,
+        /// At once: branches are springs without stress in the reference configuration.
+        Instantaneous,
+    }
 
-/// A scene by its path, or the scene itself.
-#[derive(Clone, Debug, JsonSchema)]
-#[serde(untagged)]
-pub enum SceneSource {
-    /// Path relative to the problem file.
-    Path(String),
-    /// The scene.
-    Inline(Box<SceneSpec>),
-}
-
-scalar_or_object! {
-    SceneSource: String = Self::Path, Box<SceneSpec> = Self::Inline, "the path of a scene file or a scene";
-}
-
-meanings! {
-    ResponseSpec: Response { Relaxed => Relaxed, Instantaneous => Instantaneous, }
+    /// A scene by its path, or the scene itself.
+    pub either SceneSource("the path of a scene file or a scene") {
+        /// Path relative to the problem file.
+        Path: String,
+        /// The scene.
+        Inline: Box<SceneSpec>,
+    }
 }

@@ -1,7 +1,7 @@
 //! A control problem as it is written.
 
-use crate::files::json::either::{AutoOr, Either, scalar_or_object};
-use crate::files::json::objects::{meanings, read_objects};
+use crate::files::json::either::AutoOr;
+use crate::files::json::objects::read_objects;
 use crate::files::problem::at::CoordinatesSpec;
 use crate::files::problem::free::FreeMap;
 use crate::files::problem::loads::{LoadBounds, LoadMap};
@@ -36,66 +36,53 @@ read_objects! {
         /// Lower and upper bound of every voltage that is sought, SI unit V; not needed where none is.
         pub voltage_bounds: Option<[Quantity<Voltage>; 2]>,
         /// Lower and upper bound of each load that is sought, by name, SI units N, N m, Pa, N/m³ and C/m².
-        #[serde(default)]
-        pub load_bounds: LoadBounds,
+        pub load_bounds?: LoadBounds,
         /// Loads that are given, by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where neither given nor sought.
-        #[serde(default)]
-        pub loads: LoadMap,
+        pub loads?: LoadMap,
         /// Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no unknowns,
         /// and one of 0 for all the time leaves no electric term at all. Functions of time, a table and those of a solution give all
         /// voltages, as of a simulation; then a constant of the scene has to be sought.
-        #[serde(default)]
-        pub voltages: VoltagesSpec,
+        pub voltages?: VoltagesSpec,
         /// Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
-        #[serde(default)]
-        pub free: FreeMap,
+        pub free?: FreeMap,
         /// Numbers by which the optimum is differentiated, by their paths: constants of the scene, such as `materials.silicone.shear_modulus`, and
         /// `duration`, `goal.joint_angles.NAME`, `goal.markers.NAME[0]`, `goal.rest_at_voltages.NAME`, `start.joint_angles.NAME`,
         /// `start.joint_rates.NAME`, `start.rest_at_voltages.NAME`, `voltage_bounds[1]`, `load_bounds.NAME[1]`, `objective.effort`, `objective.rate`,
         /// `objective.duration`.
-        #[serde(default)]
-        pub sensitivity: SensitivityMap,
+        pub sensitivity?: SensitivityMap,
         /// Treatment of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is
         /// `reported` (where not written), or refused where holding it is `required`.
-        #[serde(default)]
-        pub hold: HoldSpec,
+        pub hold?: HoldSpec,
         /// Objective that is minimised.
         pub objective: ObjectiveSpec,
         /// Path limits.
-        #[serde(default)]
-        pub limits: Vec<LimitSpec>,
+        pub limits?: Vec<LimitSpec>,
         /// Places, orientations and joint coordinates that the motion reaches on its way.
-        #[serde(default)]
-        pub waypoints: Vec<WaypointSpec>,
+        pub waypoints?: Vec<WaypointSpec>,
         /// Coordinates.
         pub coordinates: Option<CoordinatesSpec>,
         /// Initial guess of the solver; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages, otherwise
         /// `"interpolate"`.
         pub guess: Option<GuessSpec>,
         /// Options of the solver.
-        #[serde(default)]
-        pub solver: SolverSpec,
+        pub solver?: SolverSpec,
         /// Several motions in one optimisation: what `free` seeks is the same in all of them, and the objective is the sum of theirs. Each names the
         /// keys that are other ones in it.
-        #[serde(default)]
-        pub motions: Vec<MotionSpec>,
+        pub motions?: Vec<MotionSpec>,
         /// Names of muscles, driven electrodes (`block.electrode`) and loads whose inputs are sought once for all motions; these have one
         /// given duration and one number of intervals.
-        #[serde(default)]
-        pub shared_inputs: Vec<String>,
+        pub shared_inputs?: Vec<String>,
         /// The objective of several motions: the `sum` of theirs (where not written), or that of the `worst`, the greatest one.
         pub combine: Option<CombinedSpec>,
     }
-}
 
-/// The objective of several motions.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum CombinedSpec {
-    /// The sum of their objectives.
-    Sum,
-    /// The greatest of their objectives.
-    Worst,
+    /// The objective of several motions.
+    pub enum CombinedSpec {
+        /// The sum of their objectives.
+        Sum,
+        /// The greatest of their objectives.
+        Worst,
+    }
 }
 
 /// Keys that are needed, but where each motion may have its own.
@@ -198,35 +185,26 @@ read_objects! {
     /// Weights of the objective.
     pub struct ObjectiveSpec {
         /// Weight of Σ h |V_k|², V in kV, h in s.
-        #[serde(default)]
-        pub effort: f64,
+        pub effort?: f64,
         /// Weight of Σ |V_k − V_{k−1}|²/h, V in kV, h in s, with the rest voltages of start and goal at the ends.
-        #[serde(default)]
-        pub rate: f64,
+        pub rate?: f64,
         /// Weight of the final time in s.
-        #[serde(default)]
-        pub duration: f64,
+        pub duration?: f64,
         /// Weight of the square of the peak voltage in kV: of the largest voltage of all sources that are sought, in all intervals.
-        #[serde(default)]
-        pub peak_voltage: f64,
+        pub peak_voltage?: f64,
         /// Weight per J of the electrical energy from the sources of lumped muscles, of all sources or of named ones; what flows back is negative.
-        #[serde(default)]
-        pub electrical_energy: EnergySpec,
+        pub electrical_energy?: EnergySpec,
         /// Weight per J of the mechanical work of the electrical forces of lumped muscles, of all sources or of named ones.
-        #[serde(default)]
-        pub mechanical_work: EnergySpec,
+        pub mechanical_work?: EnergySpec,
         /// Weight per cm³ of the volume of all lumped muscles at rest, which follows from free parameters.
-        #[serde(default)]
-        pub muscle_volume: f64,
+        pub muscle_volume?: f64,
         /// Weight per g of the mass of all lumped muscles with a density, which follows from free parameters.
-        #[serde(default)]
-        pub muscle_mass: f64,
+        pub muscle_mass?: f64,
         /// References of markers and joints in time.
-        #[serde(default)]
-        pub track: Vec<TrackSpec>,
+        pub track?: Vec<TrackSpec>,
         /// Targets of markers and joints at the end.
-        #[serde(default, rename = "final")]
-        pub at_the_end: Vec<FinalSpec>,
+        #[serde(rename = "final")]
+        pub at_the_end?: Vec<FinalSpec>,
     }
 
     /// Options of the solver.
@@ -241,18 +219,16 @@ read_objects! {
         /// Options of Ipopt by name.
         pub ipopt: BTreeMap<String, OptionSpec>,
     }
-}
 
-/// Solver of the linear systems of a control problem.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ControlSolverSpec {
-    /// `stages` where Ipopt takes it, else `mumps`.
-    Auto,
-    /// LDLᵀ in the order of the horizon.
-    Stages,
-    /// LDLᵀ of MUMPS.
-    Mumps,
+    /// Solver of the linear systems of a control problem.
+    pub enum ControlSolverSpec: LinearSolver {
+        /// `stages` where Ipopt takes it, else `mumps`.
+        Auto,
+        /// LDLᵀ in the order of the horizon.
+        Stages,
+        /// LDLᵀ of MUMPS.
+        Mumps,
+    }
 }
 
 /// A value of an option of Ipopt.
@@ -274,8 +250,7 @@ read_objects! {
     /// A simulation as a guess.
     pub struct GuessSimulationSpec {
         /// Constant voltages, those of a solution, or a table, as of a simulation; 0 where not written.
-        #[serde(default)]
-        pub voltages: VoltagesSpec,
+        pub voltages?: VoltagesSpec,
     }
 
     /// A random guess.
@@ -293,37 +268,29 @@ read_objects! {
         /// A simulation under constant voltages drawn at random within the bounds.
         pub random: Option<RandomGuessSpec>,
     }
-}
 
-/// A word of a guess.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum GuessWord {
-    /// Smooth interpolation between start and goal.
-    Interpolate,
-}
+    /// A word of a guess.
+    pub enum GuessWord {
+        /// Smooth interpolation between start and goal.
+        Interpolate,
+    }
 
-/// A time, or bounds of a free one.
-#[derive(Clone, Debug, JsonSchema)]
-#[serde(untagged)]
-pub enum DurationSpec {
-    /// Given.
-    Given(Quantity<Time>),
-    /// Free.
-    Free(FreeDurationSpec),
-}
+    /// A time, or bounds of a free one.
+    pub either DurationSpec("a time, such as \"0.6 s\", or an object with \"min\", \"max\" and \"guess\"") {
+        /// Given.
+        Given: Quantity<Time>,
+        /// Free.
+        Free: FreeDurationSpec,
+    }
 
-/// A word or an object.
-#[derive(Clone, Debug, JsonSchema)]
-#[serde(untagged)]
-pub enum GuessSpec {
-    /// `"interpolate"`.
-    Word(GuessWord),
-    /// An object.
-    Object(GuessObjectSpec),
-}
+    /// A word or an object.
+    pub either GuessSpec("\"interpolate\" or an object with \"simulate\", \"solution\" or \"random\"") {
+        /// `"interpolate"`.
+        Word: GuessWord,
+        /// An object.
+        Object: GuessObjectSpec,
+    }
 
-read_objects! {
     /// The weight of an energy of some sources.
     pub struct SourceEnergySpec {
         /// Weight per J.
@@ -331,33 +298,18 @@ read_objects! {
         /// Names of lumped muscles.
         pub sources: Vec<String>,
     }
-}
 
-/// The weight of an energy of all sources, or of those that are named.
-#[derive(Clone, Debug, JsonSchema)]
-#[serde(untagged)]
-pub enum EnergySpec {
-    /// Of all sources, per J.
-    All(f64),
-    /// Of those that are named.
-    Named(SourceEnergySpec),
+    /// The weight of an energy of all sources, or of those that are named.
+    pub either EnergySpec("a weight, or an object with \"weight\" and \"sources\"") {
+        /// Of all sources, per J.
+        All: f64,
+        /// Of those that are named.
+        Named: SourceEnergySpec,
+    }
 }
 
 impl Default for EnergySpec {
     fn default() -> Self {
         Self::All(0.0)
     }
-}
-
-scalar_or_object! {
-    EnergySpec: f64 = Self::All, SourceEnergySpec = Self::Named,
-        "a weight, or an object with \"weight\" and \"sources\"";
-    DurationSpec: Quantity<Time> = Self::Given, FreeDurationSpec = Self::Free,
-        "a time, such as \"0.6 s\", or an object with \"min\", \"max\" and \"guess\"";
-    GuessSpec: GuessWord = Self::Word, GuessObjectSpec = Self::Object,
-        "\"interpolate\" or an object with \"simulate\", \"solution\" or \"random\"";
-}
-
-meanings! {
-    ControlSolverSpec: LinearSolver { Auto => Auto, Stages => Stages, Mumps => Mumps, }
 }

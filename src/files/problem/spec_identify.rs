@@ -1,7 +1,7 @@
 //! An identification as it is written: free parameters, recordings, and candidates for the next experiment.
 
 use crate::control::problem::SoughtStart;
-use crate::files::json::objects::{meanings, read_objects};
+use crate::files::json::objects::read_objects;
 use crate::files::problem::at::CoordinatesSpec;
 use crate::files::problem::free::FreeMap;
 use crate::files::problem::loads::LoadMap;
@@ -10,26 +10,21 @@ use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::StartSpec;
 use crate::files::study::ChangesSpec;
 use crate::files::units::quantity::{PhysicalQuantity, Quantity, Ratio, SoughtConstant, Time};
-use schemars::JsonSchema;
-use serde::Deserialize;
 use std::collections::BTreeMap;
 
 read_objects! {
     /// Constants that are fitted to recordings, with what the data say of them.
     pub struct IdentifySpec {
         /// Free parameters by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
-        #[serde(default)]
-        pub free: FreeMap,
+        pub free?: FreeMap,
         /// Constants of the inputs that are sought: gains of sources, and their delays.
-        #[serde(default)]
-        pub inputs: InputConstantsSpec,
+        pub inputs?: InputConstantsSpec,
         /// Constants of `free` that are known beside the recordings, by their paths: each counts as one reading more.
         pub priors: BTreeMap<String, PriorSpec>,
         /// Recordings: those that constants are fitted to, and those that are held out to check their prediction.
         pub recordings: Vec<RecordingSpec>,
         /// Experiments that could be done next; the result ranks them by the variance that they leave.
-        #[serde(default)]
-        pub candidates: Vec<CandidateSpec>,
+        pub candidates?: Vec<CandidateSpec>,
         /// Step of the first grid, SI unit s, which is halved until its bias is below a tenth of the standard errors; by the number of readings
         /// where not written.
         pub step: Option<Quantity<Time>>,
@@ -48,37 +43,31 @@ read_objects! {
         /// The same of single sources, by the names of muscles, electrodes and loads, beside that of all others.
         pub delays: BTreeMap<String, RangeSpec<Time>>,
     }
-}
 
-/// Bounds of a constant.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, bound(deserialize = ""))]
-#[schemars(bound = "M: PhysicalQuantity")]
-pub struct RangeSpec<M: PhysicalQuantity> {
-    /// Lower bound.
-    pub min: Quantity<M>,
-    /// Upper bound.
-    pub max: Quantity<M>,
-    /// Value at which the fit starts; 1 of a gain, the lower bound of a delay where not written.
-    #[serde(default)]
-    pub guess: Option<Quantity<M>>,
-    /// A normal distribution, as of a data sheet, which counts as one reading more.
-    #[serde(default)]
-    pub prior: Option<InputPriorSpec<M>>,
-}
+    /// Bounds of a constant.
+    #[serde(bound = "")]
+    #[schemars(bound = "M: PhysicalQuantity")]
+    pub struct RangeSpec<M: PhysicalQuantity> {
+        /// Lower bound.
+        pub min: Quantity<M>,
+        /// Upper bound.
+        pub max: Quantity<M>,
+        /// Value at which the fit starts; 1 of a gain, the lower bound of a delay where not written.
+        pub guess: Option<Quantity<M>>,
+        /// A normal distribution, as of a data sheet, which counts as one reading more.
+        pub prior: Option<InputPriorSpec<M>>,
+    }
 
-/// A normal distribution of a constant of the inputs.
-#[derive(Clone, Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, bound(deserialize = ""))]
-#[schemars(bound = "M: PhysicalQuantity")]
-pub struct InputPriorSpec<M: PhysicalQuantity> {
-    /// Mean.
-    pub value: Quantity<M>,
-    /// Standard deviation.
-    pub standard_deviation: Quantity<M>,
-}
+    /// A normal distribution of a constant of the inputs.
+    #[serde(bound = "")]
+    #[schemars(bound = "M: PhysicalQuantity")]
+    pub struct InputPriorSpec<M: PhysicalQuantity> {
+        /// Mean.
+        pub value: Quantity<M>,
+        /// Standard deviation.
+        pub standard_deviation: Quantity<M>,
+    }
 
-read_objects! {
     /// A normal distribution of a constant, such as that of a data sheet.
     pub struct PriorSpec {
         /// Mean, in the unit of the constant.
@@ -105,11 +94,9 @@ read_objects! {
         /// Quantities that the columns measure.
         pub measured: Vec<MeasuredSpec>,
         /// Voltages, loads and start.
-        #[serde(default)]
-        pub experiment: ExperimentSpec,
+        pub experiment?: ExperimentSpec,
         /// Values that are other ones in the scene of this recording, by their places, such as `"scene.bodies.payload.mass": "1 kg"`.
-        #[serde(default)]
-        pub set: ChangesSpec,
+        pub set?: ChangesSpec,
         /// True if no constant is fitted to it: the result says whether the fitted constants explain it.
         pub held_out: bool,
     }
@@ -125,54 +112,40 @@ read_objects! {
         /// Measured quantities; their columns are not read.
         pub measured: Vec<MeasuredSpec>,
         /// Voltages, loads and start.
-        #[serde(default)]
-        pub experiment: ExperimentSpec,
+        pub experiment?: ExperimentSpec,
         /// Values that are other ones in the scene of this experiment, by their places.
-        #[serde(default)]
-        pub set: ChangesSpec,
+        pub set?: ChangesSpec,
     }
 
     /// Voltages, loads and start of a recording.
     #[derive(Default)]
     pub struct ExperimentSpec {
         /// Constant voltages, those of a solution, a table, or functions of time such as columns of a CSV file; 0 where not written.
-        #[serde(default)]
-        pub voltages: VoltagesSpec,
+        pub voltages?: VoltagesSpec,
         /// Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
-        #[serde(default)]
-        pub loads: LoadMap,
+        pub loads?: LoadMap,
         /// Start of the motion; the reference configuration at rest where not written.
         pub start: Option<StartSpec>,
         /// Part of the start that is unknown, and fitted with the constants; nothing where not written.
-        #[serde(default)]
-        pub sought_start: SoughtStartSpec,
+        pub sought_start?: SoughtStartSpec,
         /// True if each reading is one of a state of rest under the voltages and loads of its time.
         pub at_rest: bool,
     }
-}
 
-/// Unknown part of a start.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum SoughtStartSpec {
-    /// All is given.
-    #[default]
-    Nothing,
-    /// The coordinates.
-    Coordinates,
-    /// The coordinates and the momenta.
-    State,
+    /// Unknown part of a start.
+    #[derive(Default)]
+    pub enum SoughtStartSpec: SoughtStart {
+        /// All is given.
+        #[default]
+        Nothing,
+        /// The coordinates.
+        Coordinates,
+        /// The coordinates and the momenta.
+        State,
+    }
 }
 
 /// The usual header of times.
 fn time() -> String {
     "time".to_owned()
-}
-
-meanings! {
-    SoughtStartSpec: SoughtStart {
-        Nothing => Nothing,
-        Coordinates => Coordinates,
-        State => State,
-    }
 }

@@ -1,8 +1,7 @@
 //! Conversion of states of a problem file to indices and one voltage per source.
 
 use crate::control::problem::{BoundaryState, Hold, Rest, SoughtHold};
-use crate::files::json::either::{Either, scalar_or_object};
-use crate::files::json::objects::{meanings, read_objects};
+use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, refuse};
 use crate::files::problem::at::At;
 use crate::files::problem::end_of::end_of;
@@ -13,8 +12,6 @@ use crate::files::units::quantity::{
 };
 use crate::model::Graph;
 use nalgebra::Vector3;
-use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer};
 use std::collections::BTreeMap;
 
 /// The ways to write a start.
@@ -112,33 +109,24 @@ read_objects! {
         /// Angular velocity, SI unit rad/s; 0 where not written.
         pub angular: Option<[Quantity<AngularVelocity>; 3]>,
     }
-}
 
-/// `"free"`, `"periodic"`, or a state at the end, at rest.
-#[derive(Clone, Debug, JsonSchema)]
-#[serde(untagged)]
-pub enum GoalSpec {
-    /// Anything, in motion or at rest, or the start, which is sought.
-    Word(GoalWord),
-    /// A state of rest.
-    Rest(Box<RestGoalSpec>),
-}
+    /// `"free"`, `"periodic"`, or a state at the end, at rest.
+    pub either GoalSpec(
+        "\"free\", \"periodic\", or an object with \"rest_at_voltages\", \"joint_angles\", \"markers\" or \"orientations\""
+    ) {
+        /// Anything, in motion or at rest, or the start, which is sought.
+        Word: GoalWord,
+        /// A state of rest.
+        Rest: Box<RestGoalSpec>,
+    }
 
-/// A word of a goal.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum GoalWord {
-    /// Anything, in motion or at rest.
-    Free,
-    /// The start, which is sought: the motion is periodic.
-    Periodic,
-}
-
-scalar_or_object! {
-    GoalSpec: GoalWord = Self::Word, Box<RestGoalSpec> = Self::Rest,
-        "\"free\", \"periodic\", or an object with \"rest_at_voltages\", \"joint_angles\", \"markers\" or \"orientations\"";
-    HeldSpec: HeldWord = Self::Word, VoltageMap = Self::Given,
-        "\"find\", \"none\", or voltages by name";
+    /// A word of a goal.
+    pub enum GoalWord {
+        /// Anything, in motion or at rest.
+        Free,
+        /// The start, which is sought: the motion is periodic.
+        Periodic,
+    }
 }
 
 /// The search for voltages that hold a goal.
@@ -174,29 +162,23 @@ read_objects! {
         /// are not.
         pub hold: Option<HeldSpec>,
     }
-}
 
-/// Voltages that are held after a goal.
-#[derive(Clone, Debug, JsonSchema)]
-#[serde(untagged)]
-pub enum HeldSpec {
-    /// Sought with the motion, or not at all.
-    Word(HeldWord),
-    /// Given ones.
-    Given(VoltageMap),
-}
+    /// Voltages that are held after a goal.
+    pub either HeldSpec("\"find\", \"none\", or voltages by name") {
+        /// Sought with the motion, or not at all.
+        Word: HeldWord,
+        /// Given ones.
+        Given: VoltageMap,
+    }
 
-/// Voltages that are not given.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum HeldWord {
-    /// Sought with the motion.
-    Find,
-    /// Not sought.
-    None,
-}
+    /// Voltages that are not given.
+    pub enum HeldWord {
+        /// Sought with the motion.
+        Find,
+        /// Not sought.
+        None,
+    }
 
-read_objects! {
     /// An orientation of a body: `axis` with exactly one of `towards` and `angle`.
     pub struct OrientationSpec {
         /// A direction of the ground frame, of any length: with `towards` one that moves with the body, as it is in the reference
@@ -207,32 +189,24 @@ read_objects! {
         /// Angle by which the body is turned from its reference configuration, SI unit rad.
         pub angle: Option<Quantity<Angle>>,
     }
-}
 
-/// Part that comes to rest at a goal.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum RestSpec {
-    /// Every coordinate.
-    Everything,
-    /// Bodies and the markers of the goal.
-    Bodies,
-    /// The same.
-    Markers,
-}
+    /// Part that comes to rest at a goal.
+    pub enum RestSpec: Rest {
+        /// Every coordinate.
+        Everything,
+        /// Bodies and the markers of the goal.
+        Bodies,
+        /// The same.
+        Markers = Bodies,
+    }
 
-/// Treatment of a goal that cannot be kept.
-#[derive(Clone, Copy, Debug, Default, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum HoldSpec {
-    /// A line says so.
-    #[default]
-    Reported,
-    /// It is no solution.
-    Required,
-}
-
-meanings! {
-    HoldSpec: Hold { Reported => Reported, Required => Required, }
-    RestSpec: Rest { Everything => Everything, Bodies => Bodies, Markers => Bodies, }
+    /// Treatment of a goal that cannot be kept.
+    #[derive(Default)]
+    pub enum HoldSpec: Hold {
+        /// A line says so.
+        #[default]
+        Reported,
+        /// It is no solution.
+        Required,
+    }
 }

@@ -12,8 +12,6 @@ use crate::files::units::quantity::{
 };
 use crate::model::check_axes;
 use crate::model::system::{Joint, JointKind, JointSpring, JointStops};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 /// Cosine up to which axes count as perpendicular.
 const PERPENDICULAR: f64 = 1e-3;
@@ -236,9 +234,7 @@ objects! {
         /// Direction across the plane, of any length.
         pub normal: [f64; 3],
     }
-}
 
-/// An object without entries.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct Nothing {}
+    /// An object without entries.
+    pub struct Nothing {}
+}

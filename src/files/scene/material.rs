@@ -8,8 +8,6 @@ use crate::model::MOST_BRANCHES;
 use crate::model::system::{
     ElectricConstants, Material, MaxwellBranch, MaxwellBranches, VACUUM_PERMITTIVITY,
 };
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// All materials with their names.
@@ -146,8 +144,7 @@ objects! {
         /// Viscosity η in σ = η d, SI unit Pa s; without it no viscous force.
         pub viscosity: Option<Quantity<Viscosity>>,
         /// Maxwell branches, five at most: springs in series with dampers, in which stress relaxes.
-        #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        pub maxwell: Vec<MaxwellSpec>,
+        pub maxwell?: Vec<MaxwellSpec>,
     }
 
     /// Law of elasticity: exactly one of the four. The `shear_modulus` of the material is that of small strains in each of them.
@@ -197,6 +194,16 @@ objects! {
         /// Relaxation time τ in which small stresses fall to 1/e, SI unit s.
         pub relaxation_time: Quantity<Time>,
     }
+
+    /// Law by which the relative permittivity enters the energy.
+    #[derive(Default)]
+    pub enum Dielectric {
+        /// To first order in the deformation: c₁ = −(ε_r − 1) ε₀, c₂ = (ε_r − 1) ε₀/2.
+        #[default]
+        FirstOrder,
+        /// Exactly: c₁ = c₂ = 0 and ε_r ε₀ in place of ε₀.
+        Ideal,
+    }
 }
 
 impl LawSpec {
@@ -209,17 +216,6 @@ impl LawSpec {
             "ogden" ogden |_, law| ElasticLaw::Ogden { exponents: law.exponents, share: law.share };
         ))
     }
-}
-
-/// Law by which the relative permittivity enters the energy.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Dielectric {
-    /// To first order in the deformation: c₁ = −(ε_r − 1) ε₀, c₂ = (ε_r − 1) ε₀/2.
-    #[default]
-    FirstOrder,
-    /// Exactly: c₁ = c₂ = 0 and ε_r ε₀ in place of ε₀.
-    Ideal,
 }
 
 macro_rules! kept {

@@ -4,10 +4,10 @@ use crate::files::json::scope::{Result, Scope};
 use crate::files::scene::names::{find_compressible, find_material};
 use crate::files::scene::point::unit_axis;
 use crate::files::scene::spec::{MuscleModel, MuscleSpec};
-use crate::files::scene::spec_solids::{CircuitSpec, ElementSpec};
+use crate::files::scene::spec_solids::CircuitSpec;
 use crate::files::units::quantity::Quantity;
 use crate::model::check_elements;
-use crate::model::system::{Discretisation, ElementKind, Fidelity, Material, Muscle};
+use crate::model::system::{Discretisation, Fidelity, Material, Muscle};
 
 /// The muscle that is written.
 pub(crate) fn muscle(
@@ -67,15 +67,7 @@ fn fidelity(
     Ok(Fidelity::FiniteElements(Discretisation {
         elements,
         layers: spec.layers.unwrap_or(elements[2]),
-        element: element_kind(spec.element),
+        element: spec.element.unwrap_or_default().into(),
         first_side: side.transpose()?,
     }))
-}
-
-/// Returns the kind of hexahedron; trilinear where not written.
-pub(crate) fn element_kind(spec: Option<ElementSpec>) -> ElementKind {
-    match spec.unwrap_or_default() {
-        ElementSpec::Hex8 => ElementKind::Hex8,
-        ElementSpec::Hex8Q1p0 => ElementKind::Hex8Q1P0,
-    }
 }

@@ -4,7 +4,6 @@ use crate::files::json::scope::{Result, Scope, list, refuse, the_one};
 use crate::files::problem::at::ELECTRIC_KEYS;
 use crate::files::scene::electrodes::electrodes;
 use crate::files::scene::mesh::{Meshed, meshed};
-use crate::files::scene::muscle::element_kind;
 use crate::files::scene::names::{find_body, find_compressible};
 use crate::files::scene::nodes::{extent, face, nodes, place};
 use crate::files::scene::point::vector;
@@ -59,7 +58,7 @@ pub(crate) fn solid(
         name: spec.name.clone(),
         mesh,
         materials: of_region,
-        element: element_kind(spec.element),
+        element: spec.element.unwrap_or_default().into(),
         electrodes,
         supports,
         glued,

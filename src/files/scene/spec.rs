@@ -1,7 +1,5 @@
 //! A scene as it is written: the serde types of the scene file.
 
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 use crate::files::json::objects::objects;
@@ -28,28 +26,21 @@ macro_rules! scene {
             /// Elastomers by name.
             pub materials: BTreeMap<String, MaterialSpec>,
             /// Rigid bodies; `ground` is there without being written.
-            #[serde(default, skip_serializing_if = "Vec::is_empty")]
-            pub bodies: Vec<BodySpec>,
+            pub bodies?: Vec<BodySpec>,
             /// Joints between bodies or to the ground.
-            #[serde(default, skip_serializing_if = "Vec::is_empty")]
-            pub joints: Vec<JointSpec>,
+            pub joints?: Vec<JointSpec>,
             /// Dielectric elastomer muscles.
-            #[serde(default, skip_serializing_if = "Vec::is_empty")]
-            pub muscles: Vec<MuscleSpec>,
+            pub muscles?: Vec<MuscleSpec>,
             /// Elastic blocks of finite elements.
-            #[serde(default, skip_serializing_if = "Vec::is_empty")]
-            pub solids: Vec<SolidSpec>,
+            pub solids?: Vec<SolidSpec>,
             $(
                 $(#[$about])*
-                #[serde(default, skip_serializing_if = "Vec::is_empty")]
-                pub $list: Vec<$spec>,
+                pub $list?: Vec<$spec>,
             )*
             /// Forces and torques whose sizes a problem gives or seeks.
-            #[serde(default, skip_serializing_if = "Vec::is_empty")]
-            pub loads: Vec<LoadSpec>,
+            pub loads?: Vec<LoadSpec>,
             /// Points whose motion is reported.
-            #[serde(default, skip_serializing_if = "Vec::is_empty")]
-            pub markers: Vec<MarkerSpec>,
+            pub markers?: Vec<MarkerSpec>,
             /// Acceleration of gravity, SI unit m/s².
             pub gravity: Option<[Quantity<Acceleration>; 3]>,
             /// Shorthand for a chain of segments with a pair of muscles at each joint.
@@ -190,18 +181,17 @@ stacked! {
     } {}
 }
 
-/// Model of a muscle.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum MuscleModel {
-    /// One stretch at constant volume.
-    #[default]
-    Lumped,
-    /// Finite elements, glued to both bodies with its end faces.
-    FiniteElements,
-}
-
 objects! {
+    /// Model of a muscle.
+    #[derive(Default)]
+    pub enum MuscleModel {
+        /// One stretch at constant volume.
+        #[default]
+        Lumped,
+        /// Finite elements, glued to both bodies with its end faces.
+        FiniteElements,
+    }
+
     /// A named material point of a body or of a block: exactly one of `body` and `solid`.
     pub struct MarkerSpec {
         /// Unique name.

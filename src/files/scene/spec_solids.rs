@@ -7,13 +7,12 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::collections::BTreeMap;
 use std::fmt;
 
-use crate::files::json::either::{Either, scalar_or_object};
 use crate::files::json::objects::objects;
 use crate::files::scene::point::{CornersSpec, Point};
 use crate::files::units::quantity::{
     AngularVelocity, Length, Quantity, Rate, Resistance, Velocity, Voltage,
 };
-use crate::model::system::Circuit;
+use crate::model::system::{Circuit, ElementKind};
 
 objects! {
     /// An elastic block of hexahedra: a `box` or a `mesh`, of one `material` or of `materials` by region.
@@ -36,13 +35,11 @@ objects! {
         /// Kind of hexahedron; `hex8` where not written.
         pub element: Option<ElementSpec>,
         /// Electrodes; without any the block has no potential.
-        #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        pub electrodes: Vec<ElectrodeSpec>,
+        pub electrodes?: Vec<ElectrodeSpec>,
         /// Electrodes between the layers of a stack and at its ends, alternately grounded and driven.
         pub stack: Option<StackSpec>,
         /// Faces and other places that are held. A node that is glued as well moves with its body.
-        #[serde(default, skip_serializing_if = "Vec::is_empty")]
-        pub fixed: Vec<FixedSpec>,
+        pub fixed?: Vec<FixedSpec>,
         /// Names of bodies by the faces that are glued to them; a face glued to `ground` is clamped.
         pub glued: BTreeMap<String, String>,
         /// Velocity at the start; at rest where not written.
@@ -70,20 +67,17 @@ objects! {
         /// Stretch along z.
         pub z: Option<f64>,
     }
-}
 
-/// Kind of hexahedron: its treatment of volume.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum ElementSpec {
-    /// Trilinear.
-    #[default]
-    Hex8,
-    /// Trilinear with one dilatation an element, for materials that hardly change their volume.
-    Hex8Q1p0,
-}
+    /// Kind of hexahedron: its treatment of volume.
+    #[derive(Default)]
+    pub enum ElementSpec: ElementKind {
+        /// Trilinear.
+        #[default]
+        Hex8,
+        /// Trilinear with one dilatation an element, for materials that hardly change their volume.
+        Hex8Q1p0 = Hex8Q1P0,
+    }
 
-objects! {
     /// A box cut into hexahedra.
     pub struct GridSpec {
         /// Lower corner, SI unit m; the origin where not written.
@@ -172,38 +166,25 @@ objects! {
         /// Circuit between their source and the driven electrodes.
         pub circuit: Option<CircuitSpec>,
     }
-}
 
-/// An axis of the ground frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum AxisName {
-    /// The first.
-    X,
-    /// The second.
-    Y,
-    /// The third.
-    Z,
-}
-
-impl AxisName {
-    /// Index of the coordinate.
-    pub(crate) fn index(self) -> usize {
-        self as usize
+    /// An axis of the ground frame.
+    pub enum AxisName {
+        /// The first.
+        X,
+        /// The second.
+        Y,
+        /// The third.
+        Z,
     }
-}
 
-/// A face that is clamped, or a place that is held in some directions.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
-#[serde(untagged)]
-pub enum FixedSpec {
-    /// Held in all directions.
-    Clamped(String),
-    /// Held in some.
-    Held(Box<HeldSpec>),
-}
+    /// A face that is clamped, or a place that is held in some directions.
+    pub either FixedSpec("the name of a face, or an object with \"face\" and \"directions\"") {
+        /// Held in all directions.
+        Clamped: String,
+        /// Held in some.
+        Held: Box<HeldSpec>,
+    }
 
-objects! {
     /// A `face`, `plane` or `box` whose nodes are held in some directions: a roller is held in one.
     pub struct HeldSpec {
         /// All nodes of a face.
@@ -228,15 +209,20 @@ objects! {
         /// Rate of stretch along x, y, z, SI unit 1/s.
         pub stretch_rate: Option<[Quantity<Rate>; 3]>,
     }
-}
 
-objects! {
     /// Circuit between a source and the electrodes of a muscle or a block: a resistor, a leak or both.
     pub struct CircuitSpec {
         /// Resistance in series, SI unit Ohm; without it the electrodes have the voltage of the source.
         pub resistance: Option<Quantity<Resistance>>,
         /// Resistance of a leak parallel to the electrodes, SI unit Ohm.
         pub leakage: Option<Quantity<Resistance>>,
+    }
+}
+
+impl AxisName {
+    /// Index of the coordinate.
+    pub(crate) fn index(self) -> usize {
+        self as usize
     }
 }
 
@@ -249,11 +235,6 @@ impl CircuitSpec {
             leakage: of(&self.leakage),
         }
     }
-}
-
-scalar_or_object! {
-    FixedSpec: String = Self::Clamped, Box<HeldSpec> = Self::Held,
-        "the name of a face, or an object with \"face\" and \"directions\"";
 }
 
 impl<'de> Deserialize<'de> for DivisionSpec {

@@ -5,6 +5,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
 
 use crate::files::json::either::Either;
+use crate::files::json::objects::objects;
 use crate::files::units::quantity::{
     Angle, JointCoordinate, Length, LoadSize, PhysicalQuantity, Quantity, Time, Voltage,
 };
@@ -19,81 +20,68 @@ pub enum SignalSpec<M: FollowedInTime> {
     Function(Box<FunctionSpec<M>>),
 }
 
-/// A function of time: exactly one of the four.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, bound = "M: FollowedInTime")]
-pub struct FunctionSpec<M: FollowedInTime> {
+objects! {
+    /// A function of time: exactly one of the four.
+    #[serde(bound = "")]
+    pub struct FunctionSpec<M: FollowedInTime> {
+        /// Linear between two values, constant before and after.
+        pub ramp: Option<RampSpec<M>>,
+        /// A sine.
+        pub sine: Option<SineSpec<M>>,
+        /// Linear between values at times, constant before and after.
+        pub table: Option<SignalTableSpec<M>>,
+        /// The same, with times and values from columns of a CSV file.
+        pub csv: Option<SignalCsvSpec>,
+    }
+
     /// Linear between two values, constant before and after.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub ramp: Option<RampSpec<M>>,
-    /// A sine.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub sine: Option<SineSpec<M>>,
-    /// Linear between values at times, constant before and after.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub table: Option<SignalTableSpec<M>>,
-    /// The same, with times and values from columns of a CSV file.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub csv: Option<SignalCsvSpec>,
-}
+    #[serde(bound = "")]
+    pub struct RampSpec<M: FollowedInTime> {
+        /// Value up to the start; 0 where not written.
+        pub from: Option<Quantity<M>>,
+        /// Value from the end on.
+        pub to: Quantity<M>,
+        /// Time at which it begins, SI unit s; 0 where not written.
+        pub start: Option<Quantity<Time>>,
+        /// Time that it takes, SI unit s.
+        pub duration: Quantity<Time>,
+    }
 
-/// Linear between two values, constant before and after.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, bound = "M: FollowedInTime")]
-pub struct RampSpec<M: FollowedInTime> {
-    /// Value up to the start; 0 where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub from: Option<Quantity<M>>,
-    /// Value from the end on.
-    pub to: Quantity<M>,
-    /// Time at which it begins, SI unit s; 0 where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub start: Option<Quantity<Time>>,
-    /// Time that it takes, SI unit s.
-    pub duration: Quantity<Time>,
-}
+    /// `mean + amplitude sin(2π t/period + phase)`.
+    #[serde(bound = "")]
+    pub struct SineSpec<M: FollowedInTime> {
+        /// Mean; 0 where not written.
+        pub mean: Option<Quantity<M>>,
+        /// Amplitude.
+        pub amplitude: Quantity<M>,
+        /// Period, SI unit s.
+        pub period: Quantity<Time>,
+        /// Phase, SI unit rad; 0 where not written.
+        pub phase: Option<Quantity<Angle>>,
+    }
 
-/// `mean + amplitude sin(2π t/period + phase)`.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, bound = "M: FollowedInTime")]
-pub struct SineSpec<M: FollowedInTime> {
-    /// Mean; 0 where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub mean: Option<Quantity<M>>,
-    /// Amplitude.
-    pub amplitude: Quantity<M>,
-    /// Period, SI unit s.
-    pub period: Quantity<Time>,
-    /// Phase, SI unit rad; 0 where not written.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub phase: Option<Quantity<Angle>>,
-}
+    /// Values at times.
+    #[serde(bound = "")]
+    pub struct SignalTableSpec<M: FollowedInTime> {
+        /// Times, growing, SI unit s.
+        pub time: Vec<Quantity<Time>>,
+        /// A value at each.
+        pub values: Vec<Quantity<M>>,
+    }
 
-/// Values at times.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, bound = "M: FollowedInTime")]
-pub struct SignalTableSpec<M: FollowedInTime> {
-    /// Times, growing, SI unit s.
-    pub time: Vec<Quantity<Time>>,
-    /// A value at each.
-    pub values: Vec<Quantity<M>>,
-}
-
-/// Values at times, from a CSV file: one line of headers such as `muscle1 [kV]`, SI units where a header has none, which a note
-/// says; lines that begin with `#` are comments.
-#[derive(Clone, Debug, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct SignalCsvSpec {
-    /// Path of the file, relative to the problem or to the current folder.
-    pub file: String,
-    /// Header of the times, with or without its unit.
-    #[serde(default = "time")]
-    pub time: String,
-    /// Time in that column which is 0 of the motion, SI unit s; 0 where not written, or that of a recording of the same file.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub time_offset: Option<Quantity<Time>>,
-    /// Header of the values, with or without its unit.
-    pub values: String,
+    /// Values at times, from a CSV file: one line of headers such as `muscle1 [kV]`, SI units where a header has none, which a note
+    /// says; lines that begin with `#` are comments.
+    pub struct SignalCsvSpec {
+        /// Path of the file, relative to the problem or to the current folder.
+        pub file: String,
+        /// Header of the times, with or without its unit.
+        #[serde(default = "time")]
+        pub time: String,
+        /// Time in that column which is 0 of the motion, SI unit s; 0 where not written, or that of a recording of the same file.
+        pub time_offset: Option<Quantity<Time>>,
+        /// Header of the values, with or without its unit.
+        pub values: String,
+    }
 }
 
 /// The usual header of times.

@@ -8,15 +8,13 @@ use crate::files::scene::point::{Point, unit_axis, vector};
 use crate::files::units::quantity::{Kind, PhysicalQuantity, Quantity as Written};
 use crate::math::Signal;
 use crate::model::{Plane, Quantity, What};
-use schemars::JsonSchema;
-use serde::Deserialize;
 
-/// All of them.
-#[derive(Clone, Copy, Debug, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum All {
+read_objects! {
     /// All of them.
-    All,
+    pub enum All {
+        /// All of them.
+        All,
+    }
 }
 
 /// An entry of the limits of a problem, which stands under its key.

@@ -9,8 +9,6 @@ use crate::files::scene::spec_solids::PlaneSpec;
 use crate::math::Vector;
 use crate::model::components::{BlockLoad, Faces, Load, LoadPlace};
 use crate::model::system::{Joint, Muscle, Solid, Support};
-use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
 
 objects! {
     /// A load, whose size a problem gives or seeks: a force at a `point`, a torque or force of a `joint`, such as that of a motor, the charge
@@ -41,20 +39,18 @@ objects! {
         /// and a force does not.
         pub follows: Option<bool>,
     }
-}
 
-/// Kind of a load of an elastic block. Areas and volumes are those of the reference configuration but for a pressure that follows.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum BlockLoadKind {
-    /// Force for an area along `direction`.
-    Traction,
-    /// Force for an area against the outward normal.
-    Pressure,
-    /// Charge for an area.
-    SurfaceCharge,
-    /// Force for a volume along `direction`; it acts in the whole block.
-    BodyForce,
+    /// Kind of a load of an elastic block. Areas and volumes are those of the reference configuration but for a pressure that follows.
+    pub enum BlockLoadKind {
+        /// Force for an area along `direction`.
+        Traction,
+        /// Force for an area against the outward normal.
+        Pressure,
+        /// Charge for an area.
+        SurfaceCharge,
+        /// Force for a volume along `direction`; it acts in the whole block.
+        BodyForce,
+    }
 }
 
 /// The load that is written.
