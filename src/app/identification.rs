@@ -53,9 +53,14 @@ pub(super) fn run(
         let text = "it was stopped: constants and intervals are those of the last step of a fit on the last grid";
         summary.notes.warn("stopped", [text.to_owned()]);
     }
-    let identification = Identification::new(&loaded.system, task, (&found, &starts));
+    let identification = Identification {
+        system: &loaded.system,
+        task,
+        found: &found,
+        starts: &starts,
+    };
     let text = identification.text();
-    summary.identification = Some(identification);
+    summary.identification = Some(identification.entries());
     let mut files = FileSet::in_folder(&folder);
     EARLIER.iter().for_each(|name| files.remove(name));
     files.add(
@@ -63,7 +68,7 @@ pub(super) fn run(
         cells_csv(&table(task, &found), &origin).as_bytes(),
     )?;
     if request.page == PageWanted::Written {
-        let content = page(task, loaded, &found, &summary);
+        let content = page(identification, loaded, &text, &summary);
         let page = of_plots(&loaded.system.name, &content, &origin);
         files.add("report.html", page.as_bytes())?;
     }
@@ -134,15 +139,14 @@ fn table(task: &problem::Identification, found: &Identified) -> Vec<Vec<String>>
 
 /// The page: constants with intervals, verdicts, measured against predicted, residuals, correlations and the next experiments.
 fn page(
-    task: &problem::Identification,
+    identification: Identification<'_>,
     loaded: &Loaded,
-    found: &Identified,
+    text: &str,
     summary: &Summary,
 ) -> PageContent {
+    let Identification { task, found, .. } = identification;
     let mut content = summary.page("Identification", Some(loaded));
     content.is_solved = is_solved(found);
-    let text = summary.identification.as_ref().map(Identification::text);
-    let text = text.unwrap_or_default();
     content.notes.splice(0..0, text.lines().map(str::to_owned));
     let held_out = found.held_out.iter().flat_map(|one| &one.series);
     let series = found.series.iter().chain(held_out);

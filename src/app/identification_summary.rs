@@ -4,80 +4,24 @@ use serde::Serialize;
 
 use crate::app::identification_verdict::{is_plain, prediction, product, verdict, words};
 use crate::control::problem;
-use crate::identify::{Experiment, FoundStart, HeldOut, Identified, Undetermined, Whiteness};
+use crate::files::Entries;
+use crate::identify::{
+    Experiment, FoundStart, HeldOut, Identified, Series, Undetermined, Whiteness,
+};
 use crate::math::significant;
-use crate::model::{Parameter, SiUnit, System};
+use crate::model::{SiUnit, System};
 
-/// Result of an identification.
-#[derive(Debug, Serialize)]
-pub(super) struct Identification {
-    /// The constants.
-    constants: Vec<Found>,
-    /// Correlations of all pairs of constants, in their order; none of those without an interval.
-    correlation: Vec<Vec<Option<f64>>>,
-    /// Combinations that the data do not determine.
-    undetermined: Vec<Combination>,
-    readings: usize,
-    unknowns: usize,
-    /// Σ of the squared residuals in standard deviations over the degrees of freedom.
-    reduced_chi_square: f64,
-    /// Probability of so large residuals, where the standard deviations are known.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    p: Option<f64>,
-    grid: GridBias,
+/// A fit and its assessment.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Identification<'a> {
+    pub(super) system: &'a System,
+    pub(super) task: &'a problem::Identification,
+    pub(super) found: &'a Identified,
     /// Starts that were sought.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    starts: Vec<Start>,
-    fitted: Vec<Residuals>,
-    held_out: Vec<Prediction>,
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    next_experiments: Vec<Candidate>,
+    pub(super) starts: &'a [FoundStart],
 }
 
-/// A constant.
-#[derive(Debug, Serialize)]
-struct Found {
-    name: String,
-    unit: &'static str,
-    /// Absent where the data do not determine it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    value: Option<f64>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    standard_error: Option<f64>,
-    /// Interval of 95 %.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    interval: Option<[f64; 2]>,
-    at_bound: bool,
-    /// Known beside the recordings.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    prior: Option<Known>,
-}
-
-/// A normal distribution of a constant.
-#[derive(Debug, Serialize)]
-struct Known {
-    value: f64,
-    standard_deviation: f64,
-}
-
-/// A combination of constants that is not determined.
-#[derive(Debug, Serialize)]
-struct Combination {
-    /// In words.
-    text: String,
-    /// Powers by which the constants change together.
-    powers: Vec<Power>,
-    /// The product that is determined, where its powers are plain ones.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    determined: Option<Determined>,
-}
-
-#[derive(Debug, Serialize)]
-struct Power {
-    name: String,
-    power: f64,
-}
-
+/// The product of constants that the data determine.
 #[derive(Debug, Serialize)]
 struct Determined {
     product: String,
@@ -86,313 +30,242 @@ struct Determined {
     standard_error: f64,
 }
 
-/// Grid of the last fit.
-#[derive(Debug, Serialize)]
-struct GridBias {
-    intervals: Vec<usize>,
-    halvings: usize,
-    /// Largest change of a constant by the last halving, in standard errors; absent where there was none.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    largest_change: Option<f64>,
-    confirmed: bool,
-}
-
-/// The start of a recording that was sought.
-#[derive(Debug, Serialize)]
-struct Start {
-    recording: String,
-    joints: Vec<StartJoint>,
-}
-
-/// Coordinate of a joint at a start.
-#[derive(Debug, Serialize)]
-struct StartJoint {
-    name: String,
-    /// Unit of the coordinate; that of its rate is this one over s.
-    unit: &'static str,
-    value: f64,
-    rate: f64,
-}
-
-/// Residuals of a quantity of a recording.
-#[derive(Debug, Serialize)]
-struct Residuals {
-    recording: String,
-    quantity: String,
-    readings: usize,
-    /// Root of the mean squared residual, in SI units.
-    rms: f64,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    whiteness: Option<Test>,
-}
-
-/// A test of whiteness.
-#[derive(Debug, Serialize)]
-struct Test {
-    ljung_box: f64,
-    lags: usize,
-    p: f64,
-    neighbours: f64,
-}
-
-/// A recording that was held out.
-#[derive(Debug, Serialize)]
-struct Prediction {
-    recording: String,
-    /// `explained` or `not explained`.
-    verdict: &'static str,
-    /// Squared differences over those that the deviations of readings and constants let expect.
-    statistic: f64,
-    /// The value that it exceeds with a probability of 1 %.
-    quantile: f64,
-    p: f64,
-    /// Quantities whose differences are not white.
-    not_white: Vec<String>,
-    /// The same as the statistic by the deviations of the readings alone.
-    reduced_chi_square: f64,
-    /// The verdict with its reason.
-    #[serde(skip)]
-    text: String,
-    residuals: Vec<Residuals>,
-}
-
-/// A candidate for the next experiment.
-#[derive(Debug, Serialize)]
-struct Candidate {
-    name: String,
-    /// Standard errors of the constants after it, in SI units; absent of those that are not determined then.
-    standard_errors: Vec<Option<f64>>,
-    undetermined: usize,
-}
-
-fn unit(system: &System, parameter: &Parameter) -> SiUnit {
-    parameter.unit(system)
-}
-
-impl From<&Whiteness> for Test {
-    fn from(test: &Whiteness) -> Self {
-        Self {
-            ljung_box: test.statistic,
-            lags: test.lags,
-            p: test.p,
-            neighbours: test.neighbours,
-        }
-    }
-}
-
-fn residuals(
-    task: &problem::Identification,
-    series: &[crate::identify::Series],
-    whiteness: &[Option<Whiteness>],
-) -> Vec<Residuals> {
-    let of = |(one, test): (&crate::identify::Series, &Option<Whiteness>)| {
-        let recording = &task.recordings[one.recording];
-        let channel = &recording.channels[one.channel];
-        let pairs = one.measured.iter().zip(&one.predicted);
-        let sum: f64 = pairs.map(|(m, p)| (m - p).powi(2)).sum();
-        Residuals {
-            recording: recording.name.clone(),
-            quantity: channel.name.clone(),
-            readings: one.times.len(),
-            rms: channel.unit.1 * (sum / one.times.len() as f64).sqrt(),
-            whiteness: test.as_ref().map(Test::from),
-        }
-    };
-    series.iter().zip(whiteness).map(of).collect()
-}
-
-impl Identification {
-    /// Of a fit and its assessment.
-    pub(super) fn new(
-        system: &System,
-        task: &problem::Identification,
-        (found, starts): (&Identified, &[FoundStart]),
-    ) -> Self {
-        let information = &found.information;
-        let units: Vec<SiUnit> = task.parameters.iter().map(|p| unit(system, p)).collect();
-        let values = found.fit.of_constants();
-        let has_interval = |j: usize| information.is_determined[j] && !found.fit.is_at_bound[j];
-        let constant = |(j, parameter): (usize, &Parameter)| {
-            let factor = units[j].factor;
-            let value = factor * values[j];
-            let half = has_interval(j).then(|| factor * information.half(j));
-            Found {
-                name: parameter.name.clone(),
-                unit: units[j].symbol,
-                value: information.is_determined[j].then_some(value),
-                standard_error: half.map(|half| half / information.factor),
-                interval: half.map(|half| [value - half, value + half]),
-                at_bound: found.fit.is_at_bound[j],
-                prior: Known::new(task, j, factor),
-            }
+impl Identification<'_> {
+    /// Its part of the summary.
+    pub(super) fn entries(&self) -> Entries {
+        let Self { task, found, .. } = *self;
+        let constants = 0..task.parameters.len();
+        let pair = |i: usize, j: usize| {
+            let both = self.half(i).and(self.half(j));
+            both.map(|_| found.information.correlation(i, j))
         };
-        let count = task.parameters.len();
-        let pair =
-            |i, j| (has_interval(i) && has_interval(j)).then(|| information.correlation(i, j));
-        let rows = (0..count).map(|i| (0..count).map(|j| pair(i, j)).collect());
-        let combination = |one: &Undetermined| Combination::new(task, one, &units);
-        let largest = found.bias.largest();
-        let doubled = |&r: &usize| 2 * found.grid.intervals[r];
-        Self {
-            constants: task.parameters.iter().enumerate().map(constant).collect(),
-            correlation: rows.collect(),
-            undetermined: information.undetermined.iter().map(combination).collect(),
-            readings: found.fit.residuals().len(),
-            unknowns: found.fit.free(),
-            reduced_chi_square: found.fit.sum() / found.fit.freedom().max(1) as f64,
-            p: found.p,
-            grid: GridBias {
-                intervals: found.fitted.iter().map(doubled).collect(),
-                halvings: found.bias.halvings,
-                largest_change: largest.is_finite().then_some(largest),
-                confirmed: found.bias.is_confirmed,
-            },
-            starts: starts
-                .iter()
-                .map(|one| Start::new(system, task, one))
-                .collect(),
-            fitted: residuals(task, &found.series, &found.whiteness),
-            held_out: found
-                .held_out
-                .iter()
-                .map(|one| Prediction::new(task, one))
-                .collect(),
-            next_experiments: (found.experiments.iter())
-                .map(|one| Candidate::new(task, one, &units))
-                .collect(),
-        }
+        let row = |i| constants.clone().map(|j| pair(i, j)).collect::<Vec<_>>();
+        let each = |one| self.constant(one);
+        let undetermined = found.information.undetermined.iter();
+        let starts: Vec<_> = self.starts.iter().map(|one| self.start(one)).collect();
+        let held_out = found.held_out.iter().map(|one| self.prediction(one));
+        let experiments = found.experiments.iter().map(|one| self.candidate(one));
+        Entries::default()
+            .with("constants", constants.clone().map(each).collect::<Vec<_>>())
+            // None of constants without an interval.
+            .with(
+                "correlation",
+                constants.clone().map(row).collect::<Vec<_>>(),
+            )
+            .with(
+                "undetermined",
+                undetermined
+                    .map(|one| self.combination(one))
+                    .collect::<Vec<_>>(),
+            )
+            .with("readings", found.fit.residuals().len())
+            .with("unknowns", found.fit.free())
+            // Σ of the squared residuals in standard deviations over the degrees of freedom.
+            .with(
+                "reduced_chi_square",
+                found.fit.sum() / found.fit.freedom().max(1) as f64,
+            )
+            // Probability of so large residuals, where the standard deviations are known.
+            .with_some("p", found.p)
+            .with("grid", self.grid())
+            .with_any("starts", &starts)
+            .with("fitted", self.residuals(&found.series, &found.whiteness))
+            .with("held_out", held_out.collect::<Vec<_>>())
+            .with_any("next_experiments", &experiments.collect::<Vec<_>>())
     }
 
     /// In words, a line for each constant and verdict.
     pub(super) fn text(&self) -> String {
+        let Self { task, found, .. } = *self;
         let mut lines = Vec::new();
-        for one in &self.constants {
-            let text = match (one.value, one.interval) {
-                (Some(value), Some([low, high])) => format!(
-                    "{} = {} {} (95 %: {} to {})",
-                    one.name,
-                    significant(value, 6),
-                    one.unit,
-                    significant(low, 6),
-                    significant(high, 6)
-                ),
-                (Some(value), None) => {
-                    format!(
-                        "{} = {} {}, at its bound",
-                        one.name,
-                        significant(value, 6),
-                        one.unit
-                    )
+        for (j, parameter) in task.parameters.iter().enumerate() {
+            let (name, unit) = (&parameter.name, self.unit(j).symbol);
+            let number = |value| significant(value, 6);
+            lines.push(match (self.value(j), self.half(j)) {
+                (Some(value), Some(half)) => {
+                    let ends = [value - half, value + half].map(number);
+                    let interval = format!("(95 %: {} to {})", ends[0], ends[1]);
+                    format!("{name} = {} {unit} {interval}", number(value))
                 }
-                _ => format!("{} is not determined", one.name),
-            };
-            lines.push(text);
+                (Some(value), None) => format!("{name} = {} {unit}, at its bound", number(value)),
+                _ => format!("{name} is not determined"),
+            });
         }
-        for one in &self.undetermined {
-            lines.push(one.text.clone());
-            if let Some(product) = &one.determined {
-                lines.push(format!(
+        for one in &found.information.undetermined {
+            lines.push(words(task, one));
+            lines.extend(self.determined(one).map(|known| {
+                format!(
                     "{} = {} ± {} in SI units (one standard error)",
-                    product.product,
-                    significant(product.value, 6),
-                    significant(product.standard_error, 2)
-                ));
-            }
+                    known.product,
+                    significant(known.value, 6),
+                    significant(known.standard_error, 2)
+                )
+            }));
         }
-        lines.extend(self.held_out.iter().map(|one| one.text.clone()));
-        if let Some(best) = self.next_experiments.first() {
-            lines.push(format!("next experiment: {}", best.name));
-        }
+        let held_out = found.held_out.iter();
+        lines.extend(held_out.map(|one| prediction(&task.recordings[one.recording], one)));
+        let best = found.experiments.first();
+        let best = best.map(|one| &task.candidates[one.candidate].name);
+        lines.extend(best.map(|name| format!("next experiment: {name}")));
         lines.join("\n")
     }
-}
 
-impl Combination {
-    fn new(task: &problem::Identification, one: &Undetermined, units: &[SiUnit]) -> Self {
-        let name = |j: usize| task.parameters[j].name.clone();
-        let power = |&(j, power): &(usize, f64)| Power {
-            name: name(j),
-            power,
-        };
-        Self {
-            text: words(task, one),
-            powers: one.powers.iter().map(power).collect(),
-            determined: one
-                .determined
-                .as_ref()
-                .filter(|known| is_plain(known))
-                .map(|known| {
-                    let powers = known.powers.iter();
-                    let si = powers.map(|&(j, power)| units[j].factor.powf(power));
-                    let value = known.value * si.product::<f64>();
-                    Determined {
-                        product: product(task, &known.powers),
-                        value,
-                        standard_error: (value * known.deviation).abs(),
-                    }
-                }),
-        }
+    /// SI unit of a constant.
+    fn unit(&self, constant: usize) -> SiUnit {
+        self.task.parameters[constant].unit(self.system)
     }
-}
 
-impl Known {
-    /// The prior of a constant in its SI unit, where it has one.
-    fn new(task: &problem::Identification, constant: usize, factor: f64) -> Option<Self> {
-        let known = task.priors.iter().find(|one| one.constant == constant)?;
-        Some(Self {
-            value: factor * known.value,
-            standard_deviation: factor * known.deviation,
+    /// Value of a constant in its SI unit, where the data determine it.
+    fn value(&self, constant: usize) -> Option<f64> {
+        let value = self.unit(constant).factor * self.found.fit.of_constants()[constant];
+        self.found.information.is_determined[constant].then_some(value)
+    }
+
+    /// Half of its interval of 95 %, where it has one.
+    fn half(&self, constant: usize) -> Option<f64> {
+        let Identified {
+            information, fit, ..
+        } = self.found;
+        let is_free = information.is_determined[constant] && !fit.is_at_bound[constant];
+        is_free.then(|| self.unit(constant).factor * information.half(constant))
+    }
+
+    fn constant(&self, constant: usize) -> Entries {
+        let (value, half) = (self.value(constant), self.half(constant));
+        let factor = self.found.information.factor;
+        let mut priors = self.task.priors.iter();
+        let prior = priors.find(|one| one.constant == constant).map(|known| {
+            let unit = self.unit(constant).factor;
+            Entries::default()
+                .with("value", unit * known.value)
+                .with("standard_deviation", unit * known.deviation)
+        });
+        Entries::default()
+            .with("name", &self.task.parameters[constant].name)
+            .with("unit", self.unit(constant).symbol)
+            .with_some("value", value)
+            .with_some("standard_error", half.map(|half| half / factor))
+            .with_some(
+                "interval",
+                value
+                    .zip(half)
+                    .map(|(value, half)| [value - half, value + half]),
+            )
+            .with("at_bound", self.found.fit.is_at_bound[constant])
+            // Known beside the recordings.
+            .with_some("prior", prior)
+    }
+
+    /// A combination of constants that is not determined, with the powers by which they change together.
+    fn combination(&self, one: &Undetermined) -> Entries {
+        let power = |&(j, power): &(usize, f64)| {
+            let name = &self.task.parameters[j].name;
+            Entries::default().with("name", name).with("power", power)
+        };
+        Entries::default()
+            .with("text", words(self.task, one))
+            .with("powers", one.powers.iter().map(power).collect::<Vec<_>>())
+            .with_some("determined", self.determined(one))
+    }
+
+    /// The product that is determined, where its powers are plain ones.
+    fn determined(&self, one: &Undetermined) -> Option<Determined> {
+        let known = one.determined.as_ref().filter(|known| is_plain(known))?;
+        let si = known
+            .powers
+            .iter()
+            .map(|&(j, power)| self.unit(j).factor.powf(power));
+        let value = known.value * si.product::<f64>();
+        Some(Determined {
+            product: product(self.task, &known.powers),
+            value,
+            standard_error: (value * known.deviation).abs(),
         })
     }
-}
 
-impl Start {
-    fn new(system: &System, task: &problem::Identification, one: &FoundStart) -> Self {
-        let joints = one.in_si(system);
-        let joints = joints.map(|(name, unit, value, rate)| StartJoint {
-            name: name.to_owned(),
-            unit,
-            value,
-            rate,
-        });
-        Self {
-            recording: task.recordings[one.recording].name.clone(),
-            joints: joints.collect(),
-        }
+    /// Grid of the last fit, with the largest change of a constant by the last halving in standard errors, where there was one.
+    fn grid(&self) -> Entries {
+        let Identified {
+            fitted, grid, bias, ..
+        } = self.found;
+        let doubled = |&recording: &usize| 2 * grid.intervals[recording];
+        let largest = Some(bias.largest()).filter(|change| change.is_finite());
+        Entries::default()
+            .with("intervals", fitted.iter().map(doubled).collect::<Vec<_>>())
+            .with("halvings", bias.halvings)
+            .with_some("largest_change", largest)
+            .with("confirmed", bias.is_confirmed)
     }
-}
 
-impl Prediction {
-    fn new(task: &problem::Identification, one: &HeldOut) -> Self {
-        let recording = &task.recordings[one.recording];
-        Self {
-            recording: recording.name.clone(),
-            verdict: verdict(one),
-            statistic: one.statistic,
-            quantile: one.quantile,
-            p: one.p,
-            not_white: one
-                .not_white()
-                .map(|(channel, _)| recording.channels[channel].name.clone())
-                .collect(),
-            reduced_chi_square: one.reduced,
-            text: prediction(recording, one),
-            residuals: residuals(task, &one.series, &one.whiteness),
-        }
+    /// The start of a recording; the unit of a rate is that of the coordinate over s.
+    fn start(&self, one: &FoundStart) -> Entries {
+        let joint = |(name, unit, value, rate): (_, _, _, _)| {
+            let joint = Entries::default().with("name", name).with("unit", unit);
+            joint.with("value", value).with("rate", rate)
+        };
+        let joints: Vec<_> = one.in_si(self.system).map(joint).collect();
+        Entries::default()
+            .with("recording", &self.task.recordings[one.recording].name)
+            .with("joints", joints)
     }
-}
 
-impl Candidate {
-    fn new(task: &problem::Identification, one: &Experiment, units: &[SiUnit]) -> Self {
+    /// Residuals of quantities of recordings, with the roots of their mean squares in SI units.
+    fn residuals(&self, series: &[Series], whiteness: &[Option<Whiteness>]) -> Vec<Entries> {
+        let of = |(one, test): (&Series, &Option<Whiteness>)| {
+            let recording = &self.task.recordings[one.recording];
+            let channel = &recording.channels[one.channel];
+            let pairs = one.measured.iter().zip(&one.predicted);
+            let sum: f64 = pairs.map(|(m, p)| (m - p).powi(2)).sum();
+            let test = test.as_ref().map(|test| {
+                Entries::default()
+                    .with("ljung_box", test.statistic)
+                    .with("lags", test.lags)
+                    .with("p", test.p)
+                    .with("neighbours", test.neighbours)
+            });
+            Entries::default()
+                .with("recording", &recording.name)
+                .with("quantity", &channel.name)
+                .with("readings", one.times.len())
+                .with(
+                    "rms",
+                    channel.unit.1 * (sum / one.times.len() as f64).sqrt(),
+                )
+                .with_some("whiteness", test)
+        };
+        series.iter().zip(whiteness).map(of).collect()
+    }
+
+    /// A recording that was held out.
+    fn prediction(&self, one: &HeldOut) -> Entries {
+        let recording = &self.task.recordings[one.recording];
+        let not_white = one.not_white();
+        let not_white = not_white.map(|(channel, _)| recording.channels[channel].name.clone());
+        Entries::default()
+            .with("recording", &recording.name)
+            .with("verdict", verdict(one))
+            // Squared differences over those that the deviations of readings and constants let expect.
+            .with("statistic", one.statistic)
+            // It exceeds this with a probability of 1 %.
+            .with("quantile", one.quantile)
+            .with("p", one.p)
+            .with("not_white", not_white.collect::<Vec<_>>())
+            // The same as the statistic by the deviations of the readings alone.
+            .with("reduced_chi_square", one.reduced)
+            .with("residuals", self.residuals(&one.series, &one.whiteness))
+    }
+
+    /// A candidate for the next experiment, with the standard errors after it of constants that are determined then.
+    fn candidate(&self, one: &Experiment) -> Entries {
         let information = &one.information;
         let error = |j: usize| {
             let variance = information.covariance[(j, j)];
-            (information.is_determined[j]).then(|| units[j].factor * variance.sqrt())
+            information.is_determined[j].then(|| self.unit(j).factor * variance.sqrt())
         };
-        Self {
-            name: task.candidates[one.candidate].name.clone(),
-            standard_errors: (0..units.len()).map(error).collect(),
-            undetermined: information.undetermined.len(),
-        }
+        let errors = (0..self.task.parameters.len()).map(error);
+        Entries::default()
+            .with("name", &self.task.candidates[one.candidate].name)
+            .with("standard_errors", errors.collect::<Vec<_>>())
+            .with("undetermined", information.undetermined.len())
     }
 }

@@ -6,13 +6,12 @@ use crate::app::displayed_motion::ShownPart;
 use crate::app::equilibrium_summary::PathSummary;
 use crate::app::equilibrium_summary::Rest;
 use crate::app::error::CommandError;
-use crate::app::identification_summary::Identification;
 use crate::app::linear_systems::{LinearSystems, MultigridCounts};
 use crate::app::request::CommandInput;
 use crate::app::sensitivity_summary::SensitivitySummary;
 use crate::control::problem;
 use crate::dynamics::{DiscreteTrajectory, LocalError};
-use crate::files::{Loaded, lay_out};
+use crate::files::{Entries, Loaded, lay_out};
 use crate::ipopt;
 use crate::math::significant;
 use crate::model::FoundParameter;
@@ -88,7 +87,7 @@ pub(super) struct Summary {
     pub(super) path: Option<PathSummary>,
     /// Constants that were fitted to recordings.
     #[serde(flatten)]
-    pub(super) identification: Option<Identification>,
+    pub(super) identification: Option<Entries>,
     /// Muscles and blocks that leave the domain of the first-order dielectric.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) domain: Vec<Outside>,

@@ -27,6 +27,7 @@ pub mod urdf;
 
 pub(crate) use columns::Columns;
 pub(crate) use json::document::Document;
+pub(crate) use json::entries::Entries;
 pub use json::error::{SceneError, lines, message, note, printable, printable_json};
 pub(crate) use json::layout::lay_out;
 pub(crate) use json::path::JsonPath;

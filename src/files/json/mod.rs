@@ -4,10 +4,11 @@
 //! - `document`: a file with overrides; `scope`: a value with its place, for messages.
 //! - `reader`: values of serde from a tree; `misfit`: those that do not fit, in our words; `either`: values that are written in two ways;
 //!   `objects`: types of objects.
-//! - `error`: mistakes; `set`: overrides of the command line; `layout`: lines of what is written.
+//! - `error`: mistakes; `set`: overrides of the command line; `entries`, `layout`: objects and lines of what is written.
 
 pub(crate) mod document;
 pub mod either;
+pub(crate) mod entries;
 pub mod error;
 pub(crate) mod layout;
 pub(crate) mod misfit;

@@ -1,0 +1,36 @@
+//! Entries of a JSON object in the order in which they are added.
+
+use serde::{Serialize, Serializer};
+use serde_json::value::{RawValue, to_raw_value};
+
+/// Names with values: a section of a result.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Entries(Vec<(&'static str, Box<RawValue>)>);
+
+impl Entries {
+    /// Adds a value.
+    pub(crate) fn with(mut self, name: &'static str, value: impl Serialize) -> Self {
+        let value = to_raw_value(&value).expect("numbers and words are JSON");
+        self.0.push((name, value));
+        self
+    }
+
+    /// Adds a value where there is one.
+    pub(crate) fn with_some(self, name: &'static str, value: Option<impl Serialize>) -> Self {
+        match value {
+            Some(value) => self.with(name, value),
+            None => self,
+        }
+    }
+
+    /// Adds a list that is not empty.
+    pub(crate) fn with_any<T: Serialize>(self, name: &'static str, list: &[T]) -> Self {
+        self.with_some(name, Some(list).filter(|list| !list.is_empty()))
+    }
+}
+
+impl Serialize for Entries {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
+}
