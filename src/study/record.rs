@@ -1,112 +1,21 @@
 //! `study.json`: every point with its input, its seconds and its errors, and the references of these; SI units.
 
 use crate::app::ProgressDisplay;
-use crate::files::lay_out;
+use crate::files::Entries;
 use crate::ipopt;
 use crate::report::atomic::WriteError;
 use crate::report::origin::Origin;
 use crate::report::{atomic, quoting};
 use crate::study::compare::{Judged, common};
 use crate::study::limit::{How, SequenceLimit};
-use crate::study::measure::{StudyMeasure, StudyTask};
+use crate::study::measure::StudyTask;
 use crate::study::outcome::FINER;
-use crate::study::read::{Method, Study, StudyPoint};
+use crate::study::read::{Reference, Study, StudyPoint};
 use crate::study::schedule::{Done, Results};
 use crate::workflow::parallel_map::cores;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-
-/// The file.
-#[derive(Debug, Serialize)]
-struct Record<'a> {
-    command: &'a str,
-    study: String,
-    title: &'a str,
-    asked: StudyTask,
-    /// `complete` or `interrupted`.
-    status: &'static str,
-    /// Conclusion, in words.
-    conclusion: &'a str,
-    /// Timed runs that were asked for.
-    runs: usize,
-    markers: &'a [String],
-    /// Instants that all points have, as parts of the duration.
-    instants: Vec<f64>,
-    /// Refinement factor of the grid of a re-simulation.
-    resimulated_finer: usize,
-    measures: Vec<MeasureRecord>,
-    methods: Vec<MethodRecord<'a>>,
-    /// Points that were run for the reference alone.
-    reference_points: Vec<PointRecord<'a>>,
-    machine: Machine,
-    versions: Versions,
-}
-
-/// Measure with its references.
-#[derive(Debug, Serialize)]
-struct MeasureRecord {
-    measure: StudyMeasure,
-    unit: &'static str,
-    /// Size to which an error is relative.
-    scale: f64,
-    /// Limits; empty for what is an error by itself.
-    references: Vec<LimitRecord>,
-}
-
-/// A limit.
-#[derive(Debug, Serialize)]
-struct LimitRecord {
-    /// The method whose limit it is.
-    method: String,
-    how: &'static str,
-    is_extrapolated: bool,
-    /// Observed in each three successive points; nothing where it is not sensible.
-    orders: Vec<Option<f64>>,
-    uncertainty: Option<f64>,
-    value: Vec<f64>,
-}
-
-#[derive(Debug, Serialize)]
-struct MethodRecord<'a> {
-    name: &'a str,
-    refined: &'a str,
-    /// Order that the errors of each measure show.
-    orders: BTreeMap<StudyMeasure, f64>,
-    points: Vec<PointRecord<'a>>,
-}
-
-#[derive(Debug, Serialize)]
-struct PointRecord<'a> {
-    value: &'a str,
-    size: f64,
-    problem: String,
-    set: &'a [String],
-    /// Command line that runs the point.
-    command: String,
-    status: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    message: Option<&'a str>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    seconds: Option<Seconds<'a>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    iterations: Option<usize>,
-    /// Steps that had to be halved: the point is then none of its step, and enters neither limit nor order.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    halved_steps: Option<usize>,
-    values: BTreeMap<StudyMeasure, Vec<f64>>,
-    errors: BTreeMap<StudyMeasure, f64>,
-}
-
-/// Wall time of a solution with its set-up, without reading the files and measuring.
-#[derive(Debug, Serialize)]
-struct Seconds<'a> {
-    median: f64,
-    lower_quartile: f64,
-    upper_quartile: f64,
-    /// All runs, ascending.
-    runs: &'a [f64],
-}
 
 /// Machine of the runs.
 #[derive(Debug, Serialize)]
@@ -118,12 +27,6 @@ pub(super) struct Machine {
     pub(super) system: String,
 }
 
-#[derive(Debug, Serialize)]
-struct Versions {
-    proboscis: String,
-    ipopt: &'static str,
-}
-
 /// Writes the file.
 pub(super) fn write(
     path: &Path,
@@ -133,131 +36,139 @@ pub(super) fn write(
     conclusion: &str,
 ) -> Result<(), WriteError> {
     let study = results.study;
-    let record = Record {
-        command: &request.command,
-        study: request.input.display().to_string(),
-        title: &study.title,
-        asked: study.asked,
-        status: match results.is_interrupted {
-            true => "interrupted",
-            false => "complete",
-        },
-        conclusion,
-        runs: request.runs.unwrap_or(study.runs),
-        markers: &study.markers,
-        instants: common(results),
-        resimulated_finer: FINER,
-        measures: judged
-            .iter()
-            .map(|judged| of_measure(study, judged))
-            .collect(),
-        methods: (study.methods.iter().enumerate())
-            .map(|(m, method)| of_method(study, m, method, &results.methods[m], judged))
-            .collect(),
-        reference_points: (results.reference.iter())
-            .map(|done| of_point(study, done))
-            .collect(),
-        machine: machine(),
-        versions: Versions {
-            proboscis: Origin::program(),
-            ipopt: ipopt::VERSION,
-        },
+    let status = match results.is_interrupted {
+        true => "interrupted",
+        false => "complete",
     };
-    let compact = serde_json::to_string(&record).expect("a record is JSON");
-    atomic::write(path, lay_out(&compact).as_bytes())
+    let measures = judged.iter().map(|judged| of_measure(study, judged));
+    let methods = 0..study.methods.len();
+    let reference = results
+        .reference
+        .iter()
+        .map(|done| of_point(study, done, &[], [0; 2]));
+    let versions = Entries::default()
+        .with("proboscis", Origin::program())
+        .with("ipopt", ipopt::VERSION);
+    let record = Entries::default()
+        .with("command", &request.command)
+        .with("study", request.input.display().to_string())
+        .with("title", &study.title)
+        .with("asked", study.asked)
+        .with("status", status)
+        .with("conclusion", conclusion)
+        // Timed runs that were asked for.
+        .with("runs", request.runs.unwrap_or(study.runs))
+        .with("markers", &study.markers)
+        // Instants that all points have, as parts of the duration.
+        .with("instants", common(results))
+        .with("resimulated_finer", FINER)
+        .with("measures", measures.collect::<Vec<_>>())
+        .with(
+            "methods",
+            methods
+                .map(|m| of_method(results, m, judged))
+                .collect::<Vec<_>>(),
+        )
+        // Points that were run for the reference alone.
+        .with("reference_points", reference.collect::<Vec<_>>())
+        .with("machine", machine())
+        .with("versions", versions);
+    atomic::write(path, record.laid_out().as_bytes())
 }
 
-fn of_measure(study: &Study, judged: &Judged) -> MeasureRecord {
+/// A measure with the limits that its errors are relative to; none of what is an error by itself.
+fn of_measure(study: &Study, judged: &Judged) -> Entries {
     let measure = judged.measure;
-    let limits = judged.limits.iter().enumerate();
+    let si = |value: f64| measure.unit().to_si(value);
     let of = |(index, limit): (usize, &Option<SequenceLimit>)| {
         let limit = limit.as_ref()?;
-        let si = |value: f64| measure.unit().to_si(value);
-        Some(LimitRecord {
-            method: of_reference(study, judged, index).to_owned(),
-            how: limit.how.words(),
-            is_extrapolated: limit.how == How::Extrapolated,
-            orders: limit.orders.clone(),
-            uncertainty: limit.uncertainty.map(si),
-            value: limit.value.iter().map(|&x| si(x)).collect(),
-        })
+        let value = limit.value.iter().map(|&x| si(x));
+        Some(
+            Entries::default()
+                .with("method", of_reference(study, judged, index))
+                .with("how", limit.how.words())
+                .with("is_extrapolated", limit.how == How::Extrapolated)
+                // Observed in each three successive points; nothing where it is not sensible.
+                .with("orders", &limit.orders)
+                .with("uncertainty", limit.uncertainty.map(si))
+                .with("value", value.collect::<Vec<_>>()),
+        )
     };
-    MeasureRecord {
-        measure,
-        unit: match measure.unit().suffix() {
-            "" => "1",
-            _ => "m",
-        },
-        scale: measure.unit().to_si(judged.scale),
-        references: limits.filter_map(of).collect(),
-    }
+    let unit = match measure.unit().suffix() {
+        "" => "1",
+        _ => "m",
+    };
+    let limits = judged.limits.iter().enumerate().filter_map(of);
+    Entries::default()
+        .with("measure", measure)
+        .with("unit", unit)
+        // Size to which an error is relative.
+        .with("scale", si(judged.scale))
+        .with("references", limits.collect::<Vec<_>>())
 }
 
 /// Name of the method that limit `index` is of.
 pub(super) fn of_reference<'s>(study: &'s Study, judged: &Judged, index: usize) -> &'s str {
     let method = match (&study.reference, judged.is_shared) {
-        (crate::study::read::Reference::Of { method, .. }, true) => *method,
+        (Reference::Of { method, .. }, true) => *method,
         _ => index,
     };
     &study.methods[method].name
 }
 
-fn of_method<'a>(
-    study: &'a Study,
-    m: usize,
-    method: &'a Method,
-    points: &'a [Done<'a>],
-    judged: &[Judged],
-) -> MethodRecord<'a> {
-    let points = points.iter().enumerate().map(|(k, done)| {
-        let each = || judged.iter();
-        let si = |judged: &Judged, x: f64| judged.measure.unit().to_si(x);
-        let errors = each().filter_map(|j| Some((j.measure, si(j, j.errors[m][k]?))));
-        let values = each().filter_map(|j| {
-            let value = j.values[m][k].as_ref()?;
-            Some((j.measure, value.iter().map(|&x| si(j, x)).collect()))
-        });
-        PointRecord {
-            errors: errors.collect(),
-            values: values.collect(),
-            ..of_point(study, done)
-        }
-    });
-    let orders = judged.iter();
-    MethodRecord {
-        name: &method.name,
-        refined: &method.refined,
-        orders: orders
-            .filter_map(|j| Some((j.measure, j.orders[m]?)))
-            .collect(),
-        points: points.collect(),
-    }
+/// A method with its points and the order that the errors of each measure show.
+fn of_method(results: &Results<'_>, m: usize, judged: &[Judged]) -> Entries {
+    let method = &results.study.methods[m];
+    let points = results.methods[m].iter().enumerate();
+    let points = points.map(|(k, done)| of_point(results.study, done, judged, [m, k]));
+    let orders = judged
+        .iter()
+        .filter_map(|j| Some((j.measure, j.orders[m]?)));
+    Entries::default()
+        .with("name", &method.name)
+        .with("refined", &method.refined)
+        .with("orders", orders.collect::<BTreeMap<_, _>>())
+        .with("points", points.collect::<Vec<_>>())
 }
 
-/// A point without errors.
-fn of_point<'a>(study: &Study, done: &'a Done<'a>) -> PointRecord<'a> {
-    let seconds = |median| {
-        Some(Seconds {
-            median,
-            lower_quartile: done.quantile(0.25)?,
-            upper_quartile: done.quantile(0.75)?,
-            runs: &done.seconds,
-        })
-    };
-    PointRecord {
-        value: &done.point.label,
-        size: done.point.size,
-        problem: done.point.problem.display().to_string(),
-        set: &done.point.set,
-        command: command(study.asked, done.point),
-        status: done.first.status,
-        message: done.first.message.as_deref(),
-        seconds: done.median().and_then(seconds),
-        iterations: done.seen.as_ref().map(|seen| seen.iterations),
-        halved_steps: Some(done.halved()).filter(|&count| count > 0),
-        values: BTreeMap::new(),
-        errors: BTreeMap::new(),
-    }
+/// A point, at its place by method and number in what was judged; SI units.
+fn of_point(study: &Study, done: &Done<'_>, judged: &[Judged], [m, k]: [usize; 2]) -> Entries {
+    let si = |judged: &Judged, x: f64| judged.measure.unit().to_si(x);
+    let errors = judged
+        .iter()
+        .filter_map(|j| Some((j.measure, si(j, j.errors[m][k]?))));
+    let values = judged.iter().filter_map(|j| {
+        let value = j.values[m][k].as_ref()?;
+        Some((
+            j.measure,
+            value.iter().map(|&x| si(j, x)).collect::<Vec<_>>(),
+        ))
+    });
+    let seconds = done.median().map(|median| {
+        Entries::default()
+            .with("median", median)
+            .with("lower_quartile", done.quantile(0.25))
+            .with("upper_quartile", done.quantile(0.75))
+            .with("runs", &done.seconds)
+    });
+    Entries::default()
+        .with("value", &done.point.label)
+        .with("size", done.point.size)
+        .with("problem", done.point.problem.display().to_string())
+        .with("set", &done.point.set)
+        .with("command", command(study.asked, done.point))
+        .with("status", done.first.status)
+        .with_some("message", done.first.message.as_deref())
+        // Wall time of a solution with its set-up, without reading the files and measuring.
+        .with_some("seconds", seconds)
+        .with_some("iterations", done.seen.as_ref().map(|seen| seen.iterations))
+        // The point is then none of its step, and enters neither limit nor order.
+        .with_some(
+            "halved_steps",
+            Some(done.halved()).filter(|&count| count > 0),
+        )
+        .with("values", values.collect::<BTreeMap<_, _>>())
+        .with("errors", errors.collect::<BTreeMap<_, _>>())
 }
 
 /// Returns the command line that runs a point alone.

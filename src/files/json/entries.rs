@@ -1,5 +1,6 @@
 //! Entries of a JSON object in the order in which they are added.
 
+use crate::files::json::layout::lay_out;
 use serde::{Serialize, Serializer};
 use serde_json::value::{RawValue, to_raw_value};
 
@@ -26,6 +27,11 @@ impl Entries {
     /// Adds a list that is not empty.
     pub(crate) fn with_any<T: Serialize>(self, name: &'static str, list: &[T]) -> Self {
         self.with_some(name, Some(list).filter(|list| !list.is_empty()))
+    }
+
+    /// Its text as a file.
+    pub(crate) fn laid_out(&self) -> String {
+        lay_out(&serde_json::to_string(self).expect("names and values are JSON"))
     }
 }
 
