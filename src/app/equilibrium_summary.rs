@@ -1,11 +1,12 @@
 //! A static equilibrium, and a path of equilibria, in words and in `summary.json`: joint coordinates, marker places, stiffness, and the route to it.
 
 use crate::app::fields;
-use crate::app::linear_systems::MultigridCounts;
+use crate::app::linear_systems::multigrid;
 use crate::dynamics::trajectory::{Column, Observations};
 use crate::dynamics::{
     Continuation, Instability, Load, LowestMode, Route, Softening, StabilityLoss,
 };
+use crate::files::Entries;
 use crate::model::Model;
 use crate::model::system::{Joint, JointKind};
 use crate::report::table;
@@ -54,7 +55,7 @@ pub(super) struct Rest {
     newton_iterations: usize,
     /// Counts of an iteration with multigrid, where one led there.
     #[serde(skip_serializing_if = "Option::is_none")]
-    multigrid: Option<MultigridCounts>,
+    multigrid: Option<Entries>,
     /// Unit of the stiffness in the text, and the factor to it from that of the list.
     #[serde(skip)]
     unit: (&'static str, f64),
@@ -197,7 +198,7 @@ pub(super) fn describe(result: &EquilibriumResult, observed: &Observations) -> R
         lowest_mode: found.lowest.as_ref().map(Lowest::new),
         multigrid: found
             .on_grids
-            .and_then(|(report, fallbacks)| MultigridCounts::new(report, fallbacks)),
+            .and_then(|(report, fallbacks)| multigrid(report, fallbacks)),
         newton_iterations: found.iterations,
         unit,
     }

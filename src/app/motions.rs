@@ -8,20 +8,17 @@ use crate::app::kept::{solution_file, unfinished};
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted, counted};
 use crate::app::solve::{Solved, add_notes};
-use crate::app::solve_summary::{describe, outcome_word};
-use crate::app::summary::{SoughtValue, Summary, Versions};
+use crate::app::solve_summary::{describe, gap, outcome_word, parameter, parameter_note};
+use crate::app::summary::{Summary, Versions};
 use crate::control::{Motions, PEAK_VOLTAGE};
-use crate::files::{Loaded, lay_out};
+use crate::files::{Entries, Loaded};
 use crate::math::significant;
+use crate::model::FoundParameter;
 use crate::report::atomic;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::page::compared;
 use crate::tasks::{MotionsResult, solve_motions};
-use crate::workflow::Remarks;
-use crate::workflow::accuracy::Accuracy;
-use serde::Serialize;
-use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -68,92 +65,186 @@ pub(super) fn motions(
         each.push(solved.write(&folder, read, began)?);
         unfinished::done(&folder);
     }
-    let mut summary = MotionsSummary::new(request, motions, &result, &each);
-    if let Some(stopped) = each.iter().find(|one| STOPPED.contains(&&*one.status)) {
+    let stopped = each.iter().find(|one| STOPPED.contains(&&*one.status));
+    let together = Together {
+        request,
+        motions,
+        result: &result,
+        each: &each,
         // Of the results of a motion not all was written.
-        summary.status.clone_from(&stopped.status);
-    }
-    write(request, &mut summary, &folder, began)?;
-    let mut output = command_output(motions, &result, &summary, &each, &folder);
-    add_notes(&mut output, request, loaded, &summary.status);
+        status: stopped.map_or(result.verdict.word, |one| &one.status),
+        folder: &folder,
+    };
+    let seconds = together.write(began)?;
+    let mut output = together.command_output(seconds);
+    add_notes(&mut output, request, loaded, together.status);
     Ok(output)
 }
 
-/// Writes what the motions have in common: the page of all side by side, and the summary last.
-fn write(
-    request: &CommandInput,
-    summary: &mut MotionsSummary,
-    folder: &Path,
-    began: Instant,
-) -> Result<(), CommandError> {
-    let mut files = FileSet::in_folder(folder);
-    EARLIER.iter().for_each(|name| files.remove(name));
-    fields::remove_from(0, &mut files);
-    let pages = summary.motions.iter().map(|one| folder.join(&one.folder));
-    let pages: Vec<PathBuf> = pages.collect();
-    let are_written = pages
-        .iter()
-        .all(|folder| folder.join(SIDE_BY_SIDE).is_file());
-    if request.page == PageWanted::Written && are_written {
-        let own = summary.motions.iter();
-        let own: Vec<String> = own
-            .map(|one| format!("{}/{}", one.folder, SIDE_BY_SIDE))
-            .collect();
-        let page = side_by_side(&request.command, &pages, &own)?;
-        files.add(SIDE_BY_SIDE, page.as_bytes())?;
-    }
-    summary.seconds.total = began.elapsed().as_secs_f64();
-    files.add("summary.json", summary.text().as_bytes())?;
-    Ok(files.finish()?)
+/// What the motions have in common, with their summaries in the order of the motions.
+struct Together<'a> {
+    request: &'a CommandInput,
+    motions: &'a Motions,
+    result: &'a MotionsResult,
+    each: &'a [Summary],
+    /// `solved`, where each motion is, or the word of the first that is not.
+    status: &'a str,
+    folder: &'a Path,
 }
 
-/// The answer of the command.
-fn command_output(
-    motions: &Motions,
-    result: &MotionsResult,
-    summary: &MotionsSummary,
-    each: &[Summary],
-    folder: &Path,
-) -> CommandOutput {
-    let mut is_solved = result.verdict.is_solved && !STOPPED.contains(&&*summary.status);
-    let mut word = outcome_word(result.verdict.is_solved, &summary.status);
-    let mut notes: Vec<String> = summary.message.iter().cloned().collect();
-    let of_motions = each.iter().zip(&result.list).map(|(summary, one)| {
-        let violated = one.optimum.violated.iter().map(describe);
-        violated
-            .chain(summary.notes.lines())
-            .collect::<Vec<String>>()
-    });
-    let of_motions: Vec<Vec<String>> = of_motions.collect();
-    let mut times: BTreeMap<&String, usize> = BTreeMap::new();
-    of_motions
-        .iter()
-        .flatten()
-        .for_each(|note| *times.entry(note).or_default() += 1);
-    let are_one = |note: &String| times[note] >= each.len();
-    notes.extend(of_motions[0].iter().filter(|note| are_one(note)).cloned());
-    for (motion, own) in motions.list.iter().zip(&of_motions) {
-        let own = own.iter().filter(|note| !are_one(note));
-        notes.extend(own.map(|note| format!("motion \"{}\": {note}", motion.name)));
+impl Together<'_> {
+    /// Writes the page of all side by side, and the summary last; returns the seconds so far.
+    fn write(&self, began: Instant) -> Result<f64, CommandError> {
+        let mut files = FileSet::in_folder(self.folder);
+        EARLIER.iter().for_each(|name| files.remove(name));
+        fields::remove_from(0, &mut files);
+        let names = || self.motions.list.iter().map(|motion| &motion.name);
+        let folders: Vec<PathBuf> = names().map(|name| self.folder.join(name)).collect();
+        let is_written = |folder: &PathBuf| folder.join(SIDE_BY_SIDE).is_file();
+        if self.request.page == PageWanted::Written && folders.iter().all(is_written) {
+            let pages: Vec<String> = names()
+                .map(|name| format!("{name}/{SIDE_BY_SIDE}"))
+                .collect();
+            let page = side_by_side(&self.request.command, &folders, &pages)?;
+            files.add(SIDE_BY_SIDE, page.as_bytes())?;
+        }
+        let seconds = began.elapsed().as_secs_f64();
+        files.add("summary.json", self.summary(seconds).laid_out().as_bytes())?;
+        files.finish()?;
+        Ok(seconds)
     }
-    notes.extend(summary.notes.lines());
-    let constants = summary.parameters.iter();
-    notes.extend(constants.map(|found| format!("{}: {}", found.name, found.text())));
-    if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
-        notes.extend(accuracy.notes());
-        (word, is_solved) = accuracy.outcome(&word);
+
+    /// Constants that were sought.
+    fn parameters(&self) -> impl Iterator<Item = &FoundParameter> {
+        let all = self.result.list[0].optimum.motion.parameters.iter();
+        all.filter(|found| found.name != PEAK_VOLTAGE)
     }
-    let objective = significant(summary.objective, 8);
-    CommandOutput {
-        is_solved,
-        result: format!(
-            "{word}: objective {objective}, {}, {}, {:.2} s, {}",
-            counted(motions.list.len(), "motion"),
-            counted(summary.iterations, "iteration"),
-            summary.seconds.total,
-            folder.display()
-        ),
-        notes,
+
+    /// `summary.json` of all; `seconds` are those from reading to the last file but this.
+    fn summary(&self, seconds: f64) -> Entries {
+        let MotionsResult {
+            list,
+            whole,
+            accuracy,
+            verdict,
+            remarks,
+            ..
+        } = self.result;
+        let mut units: Vec<String> = Vec::new();
+        let each = self.motions.list.iter();
+        for unit in each.flat_map(|one| one.control.objective_units(&one.system)) {
+            if !units.contains(&unit) {
+                units.push(unit);
+            }
+        }
+        let infeasibility = list.iter().map(|one| one.optimum.infeasibility);
+        let parameters: Vec<_> = self.parameters().map(parameter).collect();
+        let motions: Vec<_> = (0..list.len()).map(|number| self.motion(number)).collect();
+        Entries::default()
+            .with("command", &self.request.command)
+            .with("input", self.request.input.display().to_string())
+            .with("status", self.status)
+            .with_some("message", verdict.message.as_ref())
+            .with_some("notes", Some(remarks).filter(|remarks| !remarks.is_empty()))
+            // The sum of the objectives, or the greatest one.
+            .with("objective", whole.objective)
+            .with("objective_units", units)
+            .with("iterations", self.result.iterations)
+            .with("variables", whole.variables)
+            .with("constraints", whole.constraints)
+            .with("jacobian_nonzeros", whole.jacobian_nonzeros)
+            .with("hessian_nonzeros", whole.hessian_nonzeros)
+            .with(
+                "infeasibility",
+                infeasibility.fold(0.0, |worst, one| one.max(worst)),
+            )
+            .with_any("parameters", &parameters)
+            .with_any("shared_inputs", &self.motions.shared_inputs)
+            .with_some("gap", gap(whole.gap, verdict))
+            // The greatest errors of all motions.
+            .with_some("accuracy", accuracy.as_ref())
+            .with("motions", motions)
+            .with("seconds", Entries::default().with("total", seconds))
+            .with("versions", Versions::default())
+    }
+
+    /// A motion in the summary of all.
+    fn motion(&self, number: usize) -> Entries {
+        let name = &self.motions.list[number].name;
+        let optimum = &self.result.list[number].optimum;
+        let intervals = optimum.motion.intervals();
+        let weights = self.result.whole.weights.as_ref();
+        Entries::default()
+            .with("name", name)
+            .with("folder", name)
+            .with("status", &self.each[number].status)
+            // Its part of the objective, or its objective beside the greatest one.
+            .with("objective", optimum.solution.objective)
+            // That of its objective at the optimum, where the greatest one is minimised: 0 below it.
+            .with_some("weight", weights.map(|all| all[number]))
+            .with("intervals", intervals)
+            .with("duration", optimum.motion.times[intervals] / 1e3)
+    }
+
+    /// The answer of the command.
+    fn command_output(&self, seconds: f64) -> CommandOutput {
+        let MotionsResult {
+            whole,
+            accuracy,
+            verdict,
+            remarks,
+            ..
+        } = self.result;
+        let mut is_solved = verdict.is_solved && !STOPPED.contains(&self.status);
+        let mut word = outcome_word(verdict.is_solved, self.status);
+        let mut notes: Vec<String> = verdict.message.iter().cloned().collect();
+        notes.extend(self.notes_of_motions());
+        notes.extend(remarks.lines());
+        notes.extend(self.parameters().map(parameter_note));
+        if let (true, Some(accuracy)) = (is_solved, accuracy) {
+            notes.extend(accuracy.notes());
+            (word, is_solved) = accuracy.outcome(&word);
+        }
+        CommandOutput {
+            is_solved,
+            result: format!(
+                "{word}: objective {}, {}, {}, {seconds:.2} s, {}",
+                significant(whole.objective, 8),
+                counted(self.motions.list.len(), "motion"),
+                counted(self.result.iterations, "iteration"),
+                self.folder.display()
+            ),
+            notes,
+        }
+    }
+
+    /// Notes on the motions: those that all have once, then the others with the names of their motions.
+    fn notes_of_motions(&self) -> Vec<String> {
+        let results = self.each.iter().zip(&self.result.list);
+        let lists = results.map(|(summary, one)| {
+            let violated = one.optimum.violated.iter().map(describe);
+            violated.chain(summary.notes.lines()).collect()
+        });
+        let lists: Vec<Vec<String>> = lists.collect();
+        let times = |note| {
+            lists
+                .iter()
+                .flatten()
+                .filter(|other| *other == note)
+                .count()
+        };
+        let (mut notes, mut others) = (Vec::new(), Vec::new());
+        for (number, (motion, list)) in self.motions.list.iter().zip(&lists).enumerate() {
+            for note in list {
+                match times(note) >= lists.len() {
+                    true if number == 0 => notes.push(note.clone()),
+                    true => {}
+                    false => others.push(format!("motion \"{}\": {note}", motion.name)),
+                }
+            }
+        }
+        notes.extend(others);
+        notes
     }
 }
 
@@ -239,140 +330,4 @@ fn names(folders: &[PathBuf]) -> Vec<String> {
             .collect()
     };
     names.filter(differ).unwrap_or_else(whole)
-}
-
-/// `summary.json` of several motions.
-#[derive(Debug, Serialize)]
-struct MotionsSummary {
-    command: String,
-    input: String,
-    /// A word: `solved`, where each motion is, or that of the first that is not.
-    status: String,
-    /// Reasons why motions are not solved, in words.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    message: Option<String>,
-    /// Warnings and notes on all of them.
-    #[serde(skip_serializing_if = "Remarks::is_empty")]
-    notes: Remarks,
-    /// The sum of their objectives, or the greatest one.
-    objective: f64,
-    objective_units: Vec<String>,
-    iterations: usize,
-    variables: usize,
-    constraints: usize,
-    jacobian_nonzeros: usize,
-    hessian_nonzeros: usize,
-    /// Greatest violation of an equation or limit of a motion.
-    infeasibility: f64,
-    /// Constants that were sought.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    parameters: Vec<SoughtValue>,
-    /// Sources whose inputs are the same in all motions.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    shared_inputs: Vec<String>,
-    /// Bound of the objective above its least value; absent without a solution.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    gap: Option<f64>,
-    /// Estimated errors, the greatest of all motions.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    accuracy: Option<Accuracy>,
-    /// The motions in their order, with the summaries of their folders.
-    motions: Vec<MotionEntry>,
-    seconds: TotalSeconds,
-    versions: Versions,
-}
-
-/// A motion in the summary of all.
-#[derive(Debug, Serialize)]
-struct MotionEntry {
-    name: String,
-    /// Its folder, in that of the results.
-    folder: String,
-    status: String,
-    /// Its part of the objective, or its objective beside the greatest one.
-    objective: f64,
-    /// The weight of its objective at the optimum, where the greatest one is minimised: 0 below it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    weight: Option<f64>,
-    intervals: usize,
-    /// Final time in s.
-    duration: f64,
-}
-
-/// Wall time in s.
-#[derive(Debug, Default, Serialize)]
-struct TotalSeconds {
-    /// Seconds from reading to the last file but the summary.
-    total: f64,
-}
-
-impl MotionsSummary {
-    /// Of a result whose motions have these summaries.
-    fn new(
-        request: &CommandInput,
-        motions: &Motions,
-        result: &MotionsResult,
-        each: &[Summary],
-    ) -> Self {
-        let MotionsResult {
-            list,
-            whole,
-            iterations,
-            accuracy,
-            verdict,
-            remarks,
-        } = result;
-        let constants = list[0].optimum.motion.parameters.iter();
-        let constants = constants.filter(|found| found.name != PEAK_VOLTAGE);
-        let weight = |number: usize| whole.weights.as_ref().map(|all| all[number]);
-        let entries = motions.list.iter().zip(list).zip(each).enumerate();
-        let entries = entries.map(|(number, ((motion, result), summary))| {
-            let found = &result.optimum.motion;
-            MotionEntry {
-                name: motion.name.clone(),
-                folder: motion.name.clone(),
-                status: summary.status.clone(),
-                objective: result.optimum.solution.objective,
-                weight: weight(number),
-                intervals: found.intervals(),
-                duration: found.times[found.intervals()] / 1e3,
-            }
-        });
-        let mut units: Vec<String> = Vec::new();
-        let of_motions = motions.list.iter();
-        for unit in of_motions.flat_map(|one| one.control.objective_units(&one.system)) {
-            if !units.contains(&unit) {
-                units.push(unit);
-            }
-        }
-        Self {
-            command: request.command.clone(),
-            input: request.input.display().to_string(),
-            status: verdict.word.to_owned(),
-            message: verdict.message.clone(),
-            notes: remarks.clone(),
-            objective: whole.objective,
-            objective_units: units,
-            iterations: *iterations,
-            variables: whole.variables,
-            constraints: whole.constraints,
-            jacobian_nonzeros: whole.jacobian_nonzeros,
-            hessian_nonzeros: whole.hessian_nonzeros,
-            parameters: constants.map(SoughtValue::new).collect(),
-            shared_inputs: motions.shared_inputs.clone(),
-            infeasibility: list
-                .iter()
-                .fold(0.0, |worst, one| one.optimum.infeasibility.max(worst)),
-            gap: Some(whole.gap).filter(|gap| verdict.is_solved && gap.is_finite()),
-            accuracy: accuracy.clone(),
-            motions: entries.collect(),
-            seconds: TotalSeconds::default(),
-            versions: Versions::default(),
-        }
-    }
-
-    /// Its text.
-    fn text(&self) -> String {
-        lay_out(&serde_json::to_string(self).expect("numbers and names are JSON"))
-    }
 }

@@ -7,14 +7,15 @@ use crate::app::error::CommandError;
 use crate::app::kept::partial_result::{STOPPED, leave_out, plan, time_to_write};
 use crate::app::kept::unfinished::Unfinished;
 use crate::app::kept::{resume_file, solution_file, unfinished};
+use crate::app::linear_systems::multigrid;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput, counted};
 use crate::app::summary::{Seconds, Summary};
-use crate::app::{comparison, fields, summary};
+use crate::app::{comparison, fields};
 use crate::control::problem::{Afterwards, Simulation, Voltages};
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{DiscreteTrajectory, LocalError, observed};
-use crate::files::Loaded;
+use crate::files::{Entries, Loaded};
 use crate::math::{join, shortest};
 use crate::model::Model;
 use crate::report;
@@ -268,14 +269,50 @@ fn summary_of(run: &Run<'_>, read: f64, ended: &SimulationResult, plan: &Plan) -
     summary
 }
 
-/// The numbers of a simulation with the sum of its local errors.
+/// The numbers of a simulation with the sum of its local errors, an estimate of its distance from the exact motion.
 fn simulation_summary(
     run: &Run<'_>,
     ended: &SimulationResult,
     neglected: Option<LocalError>,
-) -> summary::Simulation {
-    let simulated = &ended.simulated;
-    summary::Simulation::new((&simulated.discrete, simulated.error), run.task, neglected)
+) -> Entries {
+    let Simulated {
+        discrete, error, ..
+    } = &ended.simulated;
+    let (steps, report) = (discrete.intervals(), discrete.report);
+    let neglected = neglected.map(|error| {
+        Entries::default()
+            // Of the point where it is greatest, in m.
+            .with("sum", error.error / 1e3)
+            // Way of the point that goes farthest, in m.
+            .with("path", error.path / 1e3)
+            .with("relative", error.relative())
+            // Order of the method.
+            .with("order", error.order)
+            // True if differences of the motion fall with their order; otherwise the estimate is no more than a warning.
+            .with("is_resolved", error.is_resolved)
+    });
+    Entries::default()
+        .with("steps", steps)
+        .with("duration", discrete.times[steps] / 1e3)
+        .with_some("local_error", neglected)
+        .with("integrator", run.task.solving.integrator.name())
+        .with_some("tolerance", run.task.tolerance)
+        // In the unit of the tolerance; absent of equal steps.
+        .with_some("estimated_error", error.map(|estimated| estimated.error))
+        // True if steps of two other lengths confirm the estimate.
+        .with_some(
+            "is_confirmed",
+            error.map(|estimated| estimated.is_confirmed),
+        )
+        .with("newton_iterations", report.iterations)
+        .with("halved_steps", report.halved)
+        .with("linear_solver", &discrete.solver)
+        .with_some("multigrid", multigrid(report.multigrid, report.fallbacks))
+        .with("factorisations", report.factorisations)
+        // In rows and tangents.
+        .with("assembly_seconds", report.assembly)
+        .with("factorisation_seconds", report.factorisation)
+        .with("solution_seconds", report.solution)
 }
 
 /// Adds what is observed of a simulation to its summary, and the notes on it.

@@ -68,8 +68,7 @@ pub(super) fn control(
     };
     let summary = solved.write(&folder, read, began)?;
     unfinished::done(&folder);
-    let violated = &result.optimum.violated;
-    let mut output = command_output(&summary, control.is_refined, violated, &folder);
+    let mut output = command_output(&summary, control, &result, &folder);
     add_notes(&mut output, request, loaded, &summary.status);
     Ok(output)
 }
@@ -191,7 +190,7 @@ impl Solved<'_> {
             .map(|other| shown.beside(other));
         let goal = goal(model, boundary);
         let mut content = summary.page("Optimal control", Some(self.loaded));
-        content.rows = rows(summary);
+        content.rows = rows(summary, self.system, control, result);
         content
             .plots
             .push(convergence(&optimum.solution.iterations));

@@ -1,21 +1,22 @@
 //! A control problem in `summary.json`, on its page and in the answer of its command: program, notes, times, rows, convergence, goal.
 
 use crate::app::kept::partial_result::STOPPED;
-use crate::app::linear_systems::LinearSystems;
+use crate::app::linear_systems::linear_systems;
 use crate::app::request::{CommandOutput, counted};
 use crate::app::sensitivity_summary::SensitivitySummary;
-use crate::app::summary::{Evaluations, PerInterval, Program, Seconds, SoughtValue, Summary};
+use crate::app::summary::{Seconds, Summary};
 use crate::control::BoundaryConditions;
 use crate::control::problem::{BoundaryState, Control, CostFunction, During, Place, instant_at};
 use crate::dynamics::trajectory::Trajectory;
+use crate::files::Entries;
 use crate::ipopt::Iteration;
 use crate::kinematics::Pose;
 use crate::math::significant;
-use crate::model::{Model, System, What};
+use crate::model::{FoundParameter, Model, System, What};
 use crate::report::axes::{Axis, Extent};
 use crate::report::lines::{LinePlot, Series};
 use crate::report::style;
-use crate::tasks::{SolveResult, solve_messages};
+use crate::tasks::{SolveResult, Verdict, solve_messages};
 use crate::workflow::motion::Distance;
 use crate::workflow::optimum::{Optimum, Violation};
 use crate::workflow::tracking::Tracked;
@@ -25,43 +26,84 @@ use std::path::Path;
 use std::time::Instant;
 
 /// The program of an optimum in numbers.
-pub(super) fn program(system: &System, control: &Control, result: &SolveResult) -> Program {
+pub(super) fn program(system: &System, control: &Control, result: &SolveResult) -> Entries {
     let optimum = &result.optimum;
     let Optimum {
         solution,
-        motion: kept,
+        motion,
+        program: size,
         ..
     } = optimum;
-    let is_solved = result.verdict.is_solved;
-    let intervals = kept.intervals();
+    let intervals = motion.intervals();
+    let (seconds, counts) = (&solution.seconds, &solution.evaluations);
+    let evaluations = Entries::default()
+        .with("objective", counts.objective)
+        .with("gradient", counts.gradient)
+        .with("constraints", counts.constraints)
+        .with("jacobian", counts.jacobian)
+        .with("hessian", counts.hessian);
+    // The mean of one evaluation; nothing where there was none.
     let per_interval = |seconds: f64, evaluations: usize| {
         (evaluations > 0).then(|| 1e6 * seconds / (evaluations * intervals) as f64)
     };
-    let seconds = &solution.seconds;
-    Program {
-        objective: solution.objective,
-        objective_units: control.objective_units(system),
-        iterations: result.iterations,
-        intervals,
-        duration: kept.times[intervals] / 1e3,
-        variables: solution.x.len(),
-        constraints: optimum.program.constraints,
-        jacobian_nonzeros: optimum.program.jacobian_nonzeros,
-        hessian_nonzeros: optimum.program.hessian_nonzeros,
-        linear_solver: LinearSystems::new(&solution.linear),
-        evaluations: Evaluations::new(&solution.evaluations),
-        interval_microseconds: PerInterval {
-            jacobian: per_interval(seconds.jacobian, solution.evaluations.jacobian),
-            hessian: per_interval(seconds.hessian, solution.evaluations.hessian),
-        },
-        infeasibility: Some(optimum.infeasibility).filter(|value| value.is_finite()),
-        violations: optimum.violated.clone(),
-        resimulation: optimum.resimulation.clone(),
-        parameters: kept.parameters.iter().map(SoughtValue::new).collect(),
-        gap: Some(optimum.program.gap).filter(|gap| is_solved && gap.is_finite()),
-        afterwards: optimum.afterwards.clone(),
-        repeated: optimum.repeated.clone(),
+    let microseconds = Entries::default()
+        .with("jacobian", per_interval(seconds.jacobian, counts.jacobian))
+        .with("hessian", per_interval(seconds.hessian, counts.hessian));
+    let infeasibility = Some(optimum.infeasibility).filter(|value| value.is_finite());
+    let parameters: Vec<_> = motion.parameters.iter().map(parameter).collect();
+    Entries::default()
+        .with("objective", solution.objective)
+        .with("objective_units", control.objective_units(system))
+        .with("iterations", result.iterations)
+        .with("intervals", intervals)
+        .with("duration", motion.times[intervals] / 1e3)
+        .with("variables", solution.x.len())
+        .with("constraints", size.constraints)
+        .with("jacobian_nonzeros", size.jacobian_nonzeros)
+        .with("hessian_nonzeros", size.hessian_nonzeros)
+        .with("linear_solver", linear_systems(&solution.linear))
+        .with("evaluations", evaluations)
+        .with("interval_microseconds", microseconds)
+        // The greatest scaled violation of an equation or limit; absent where one has no value.
+        .with_some("infeasibility", infeasibility)
+        // The worst rows that do not hold; none of a solution.
+        .with("violations", &optimum.violated)
+        .with_some("resimulation", optimum.resimulation.as_ref())
+        .with_any("parameters", &parameters)
+        .with_some("gap", gap(size.gap, &result.verdict))
+        // Motion after a goal that no known voltages hold.
+        .with_some("afterwards", optimum.afterwards.as_ref())
+        // A periodic motion under the same inputs again.
+        .with_some("repeated", optimum.repeated.as_ref())
+}
+
+/// Bound of the objective above its least value; absent without a solution.
+pub(super) fn gap(gap: f64, verdict: &Verdict) -> Option<f64> {
+    (verdict.is_solved && gap.is_finite()).then_some(gap)
+}
+
+/// A constant that was sought, in its unit of the International System.
+pub(super) fn parameter(found: &FoundParameter) -> Entries {
+    Entries::default()
+        .with("name", &found.name)
+        .with("value", found.value * found.unit.factor)
+        .with("unit", found.unit.symbol)
+        .with("at_bound", found.is_at_bound)
+}
+
+/// The same in words.
+fn parameter_text(found: &FoundParameter) -> String {
+    let value = significant(found.value * found.unit.factor, 8);
+    let value = format!("{value} {}", found.unit.symbol);
+    match found.is_at_bound {
+        true => format!("{}, at its bound", value.trim_end()),
+        false => value.trim_end().to_owned(),
     }
+}
+
+/// A note on a constant that was sought.
+pub(super) fn parameter_note(found: &FoundParameter) -> String {
+    format!("{}: {}", found.name, parameter_text(found))
 }
 
 /// Times of a solve whose files were read in `read` seconds.
@@ -92,38 +134,34 @@ pub(super) fn outcome_word(is_solved: bool, status: &str) -> String {
 /// The answer of the command.
 pub(super) fn command_output(
     summary: &Summary,
-    is_refined: bool,
-    violated: &[Violation],
+    control: &Control,
+    result: &SolveResult,
     folder: &Path,
 ) -> CommandOutput {
-    let program = summary.program.as_ref();
-    let (objective, iterations) = program.map_or((f64::NAN, 0), |p| (p.objective, p.iterations));
+    let optimum = &result.optimum;
     let mut is_solved = summary.message.is_none();
     let mut word = outcome_word(is_solved, &summary.status);
     let mut notes: Vec<String> = summary.message.iter().cloned().collect();
-    notes.extend(violated.iter().map(describe));
+    notes.extend(optimum.violated.iter().map(describe));
     notes.extend(summary.notes.lines());
-    let parameters = program.iter().flat_map(|program| &program.parameters);
-    notes.extend(parameters.map(|found| format!("{}: {}", found.name, found.text())));
+    notes.extend(optimum.motion.parameters.iter().map(parameter_note));
     if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
         notes.extend(accuracy.notes());
         (word, is_solved) = accuracy.outcome(&word);
     }
     // An optimum of which not all is written.
     is_solved &= !STOPPED.contains(&&*summary.status);
-    let grid = match is_refined || summary.accuracy.is_some() {
-        true => format!(
-            ", {}",
-            counted(program.map_or(0, |p| p.intervals), "interval")
-        ),
+    let intervals = optimum.motion.intervals();
+    let grid = match control.is_refined || summary.accuracy.is_some() {
+        true => format!(", {}", counted(intervals, "interval")),
         false => String::new(),
     };
-    let objective = significant(objective, 8);
+    let objective = significant(optimum.solution.objective, 8);
     CommandOutput {
         is_solved,
         result: format!(
             "{word}: objective {objective}{grid}, {}, {:.2} s, {}",
-            counted(iterations, "iteration"),
+            counted(result.iterations, "iteration"),
             summary.seconds.total,
             folder.display()
         ),
@@ -132,25 +170,33 @@ pub(super) fn command_output(
 }
 
 /// Rows of the table of the page.
-pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
-    let mut rows = vec![("status".to_owned(), summary.status.clone())];
-    let Some(program) = &summary.program else {
-        return rows;
-    };
+pub(super) fn rows(
+    summary: &Summary,
+    system: &System,
+    control: &Control,
+    result: &SolveResult,
+) -> Vec<(String, String)> {
+    let optimum = &result.optimum;
+    let (motion, intervals) = (&optimum.motion, optimum.motion.intervals());
+    let objective = objective(optimum.solution.objective, &control.objective_units(system));
+    let mut rows = Vec::new();
     let mut row = |key: &str, value: String| rows.push((key.to_owned(), value));
-    row("objective", objective(program));
-    row("iterations", program.iterations.to_string());
-    row("duration", format!("{:.6} s", program.duration));
-    row("intervals", program.intervals.to_string());
-    for parameter in &program.parameters {
-        row(&parameter.name, parameter.text());
+    row("status", summary.status.clone());
+    row("objective", objective);
+    row("iterations", result.iterations.to_string());
+    row(
+        "duration",
+        format!("{:.6} s", motion.times[intervals] / 1e3),
+    );
+    row("intervals", intervals.to_string());
+    for found in &motion.parameters {
+        row(&found.name, parameter_text(found));
     }
-    let coordinates = summary.coordinates.unwrap_or_default();
-    row("coordinates", coordinates.to_owned());
-    row("variables", program.variables.to_string());
-    row("constraints", program.constraints.to_string());
+    row("coordinates", optimum.model.coordinates.name().to_owned());
+    row("variables", optimum.solution.x.len().to_string());
+    row("constraints", optimum.program.constraints.to_string());
     rows.extend(summary.rows());
-    if let Some(r) = &program.resimulation {
+    if let Some(r) = &optimum.resimulation {
         let of = |d: &Distance| format!("{:.1e} rad, {:.1e} m", d.angle, d.length);
         let key = "deviation when simulated forward";
         rows.push((key.to_owned(), of(&r.deviation)));
@@ -160,15 +206,14 @@ pub(super) fn rows(summary: &Summary) -> Vec<(String, String)> {
     }
     rows.extend(summary.tracking.iter().map(tracking_row));
     rows.extend(summary.sensitivities.iter().map(SensitivitySummary::row));
-    let violated = program.violations.iter().map(describe);
+    let violated = optimum.violated.iter().map(describe);
     rows.extend(violated.map(|words| ("violated".to_owned(), words)));
     rows
 }
 
 /// The objective with its unit, or those of its terms where they differ.
-fn objective(program: &Program) -> String {
-    let value = program.objective;
-    match program.objective_units.as_slice() {
+fn objective(value: f64, units: &[String]) -> String {
+    match units {
         [] => format!("{value:.9}"),
         [unit] => format!("{value:.9} {unit}").trim_end().to_owned(),
         [units @ .., last] => format!(
