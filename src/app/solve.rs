@@ -10,11 +10,10 @@ use crate::app::kept::partial_result::{leave_out, time_to_write};
 use crate::app::kept::{resume_file, solution_file, unfinished};
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::sensitivity_summary::SensitivitySummary;
 use crate::app::solve_summary::{command_output, program, seconds};
 use crate::app::solve_summary::{convergence, goal, rows, targets, waypoints};
 use crate::app::summary::{MEASURED, Summary};
-use crate::app::{feedback_files, fields};
+use crate::app::{feedback_files, fields, sensitivity_summary};
 use crate::control::problem::{Control, Regulator};
 use crate::dynamics::observations;
 use crate::files::Loaded;
@@ -230,10 +229,14 @@ fn add_observed(summary: &mut Summary, result: &SolveResult) {
     summary.waypoint_values.clone_from(&result.waypoint_values);
     summary.final_values.clone_from(&result.final_values);
     summary.notes.clone_from(&result.remarks);
-    let system = &result.optimum.model.system;
-    summary.sensitivities = SensitivitySummary::all(system, result);
-    let warnings = summary.sensitivities.iter();
-    let warnings: Vec<String> = warnings.filter_map(SensitivitySummary::warning).collect();
+    let optimum = &result.optimum;
+    let (system, motion) = (&optimum.model.system, &optimum.motion);
+    let each = result.sensitivities.iter();
+    let sections = each
+        .clone()
+        .map(|one| sensitivity_summary::entries(system, motion, one));
+    summary.sensitivities = sections.collect();
+    let warnings = each.filter_map(sensitivity_summary::warning);
     summary.notes.warn("tolerance", warnings);
 }
 

@@ -3,7 +3,7 @@
 use crate::app::kept::partial_result::STOPPED;
 use crate::app::linear_systems::linear_systems;
 use crate::app::request::{CommandOutput, counted};
-use crate::app::sensitivity_summary::SensitivitySummary;
+use crate::app::sensitivity_summary;
 use crate::app::summary::{Seconds, Summary};
 use crate::control::BoundaryConditions;
 use crate::control::problem::{BoundaryState, Control, CostFunction, During, Place, instant_at};
@@ -205,7 +205,7 @@ pub(super) fn rows(
         }
     }
     rows.extend(summary.tracking.iter().map(tracking_row));
-    rows.extend(summary.sensitivities.iter().map(SensitivitySummary::row));
+    rows.extend(result.sensitivities.iter().map(sensitivity_summary::row));
     let violated = optimum.violated.iter().map(describe);
     rows.extend(violated.map(|words| ("violated".to_owned(), words)));
     rows

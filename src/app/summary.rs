@@ -7,7 +7,6 @@ use crate::app::equilibrium_summary::PathSummary;
 use crate::app::equilibrium_summary::Rest;
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;
-use crate::app::sensitivity_summary::SensitivitySummary;
 use crate::files::{Entries, Loaded, lay_out};
 use crate::ipopt;
 use crate::report::PageContent;
@@ -66,7 +65,7 @@ pub(super) struct Summary {
     pub(super) final_values: Vec<FinalValue>,
     /// Derivatives of the optimum by numbers that the problem names.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(super) sensitivities: Vec<SensitivitySummary>,
+    pub(super) sensitivities: Vec<Entries>,
     /// Electrical energy and mechanical work of a motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) energies: Option<EnergySummary>,
