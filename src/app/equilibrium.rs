@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::app::blocks::BlockSizes;
-use crate::app::equilibrium_summary::{Rest, at_rest, describe, lost, rows, status, text};
+use crate::app::equilibrium_summary::{Rest, at_rest, status};
 use crate::app::error::CommandError;
 use crate::app::kept::overwrite_check::{make_folder_of, refuse_foreign};
 use crate::app::no_equilibrium::{no_equilibrium, refused};
@@ -15,7 +15,7 @@ use crate::app::{fields, path};
 use crate::control::problem::{AtRest, Task};
 use crate::dynamics::{UNSTABLE, observations};
 use crate::files::{Loaded, driven_voltages, read_problem, read_system};
-use crate::model::{Model, Response, System};
+use crate::model::{Response, System};
 use crate::report::file_set::FileSet;
 use crate::report::skins::Skins;
 use crate::report::{Run, write_still};
@@ -97,7 +97,7 @@ pub(super) fn at(
         ..
     } = &result;
     let observed = at_rest(observations(model, discrete));
-    let rest = describe(&result, &observed);
+    let rest = Rest::new(&result, &observed);
     let folder = make_folder_of(request)?;
     let writing = Instant::now();
     let origin = request.origin(false);
@@ -106,7 +106,7 @@ pub(super) fn at(
     let status = loss.map_or(result.found.status(), status);
     let mut summary = Summary::new(request, status, model.coordinates.name());
     summary.message = match loss {
-        Some(loss) => Some(lost(&rest, *loss, &folder)),
+        Some(loss) => Some(rest.lost_words(*loss, &folder)),
         None => (status == UNSTABLE).then(|| rest.verdict()),
     };
     summary.domain.clone_from(&result.outside);
@@ -118,16 +118,15 @@ pub(super) fn at(
         setup: read + result.setup,
         ..Seconds::default()
     };
-    let output = command_output(&summary, model, &rest, &folder);
-    let rows = rows(&rest, status);
-    summary.rest = Some(rest);
+    let output = command_output(&summary, &rest, &folder);
+    summary.rest = Some(rest.entries());
     let title = match loss {
         None if status == UNSTABLE => "An unstable equilibrium",
         None => "Static equilibrium",
         Some(_) => "The last equilibrium",
     };
     let mut page = summary.page(title, loaded);
-    page.rows = rows;
+    page.rows = rest.rows(status);
     let skins = Skins::new(model, discrete);
     let run = Run {
         name: "rest",
@@ -149,13 +148,13 @@ pub(super) fn at(
 }
 
 /// The answer of the command; an equilibrium that is unstable or was lost has a message.
-fn command_output(summary: &Summary, model: &Model, rest: &Rest, folder: &Path) -> CommandOutput {
+fn command_output(summary: &Summary, rest: &Rest<'_>, folder: &Path) -> CommandOutput {
     let message = summary.message.iter().cloned();
     let is_solved = summary.message.is_none();
     CommandOutput {
         is_solved,
         result: match summary.status == UNSTABLE {
-            _ if is_solved => format!("{}, {}", text(model, rest), folder.display()),
+            _ if is_solved => format!("{}, {}", rest.text(), folder.display()),
             true => format!("unstable equilibrium, {}", folder.display()),
             false => "no equilibrium".to_owned(),
         },

@@ -1,106 +1,37 @@
-//! A static equilibrium, and a path of equilibria, in words and in `summary.json`: joint coordinates, marker places, stiffness, and the route to it.
+//! A static equilibrium in words and in `summary.json`: joint coordinates, marker places, stiffness, and the route to it.
 
 use crate::app::fields;
 use crate::app::linear_systems::multigrid;
+use crate::app::request::counted;
 use crate::dynamics::trajectory::{Column, Observations};
-use crate::dynamics::{
-    Continuation, Instability, Load, LowestMode, Route, Softening, StabilityLoss,
-};
+use crate::dynamics::{Instability, Load, LowestMode, Route, Softening, StabilityLoss};
 use crate::files::Entries;
-use crate::model::Model;
 use crate::model::system::{Joint, JointKind};
 use crate::report::table;
 use crate::tasks::EquilibriumResult;
 use crate::workflow::motion::solved;
-use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
 /// A static equilibrium, or the last one on the way to the loads asked for.
-#[derive(Debug, Serialize)]
-pub(super) struct Rest {
+#[derive(Debug)]
+pub(super) struct Rest<'a> {
+    result: &'a EquilibriumResult,
     /// Voltage of each muscle and electrode in V.
-    voltages: BTreeMap<String, f64>,
-    /// Fraction of the voltages asked for that these are, where they were not reached.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    fraction: Option<f64>,
-    /// Largest electric field of an element of a block in its reference configuration in V/m.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    largest_nominal_field: Option<f64>,
+    voltages: BTreeMap<&'a str, f64>,
     /// Coordinate of each joint in rad or m.
-    joints: BTreeMap<String, f64>,
+    joints: BTreeMap<&'a str, f64>,
     /// Place of each marker in m.
-    markers: BTreeMap<String, [f64; 3]>,
+    markers: BTreeMap<&'a str, [f64; 3]>,
     /// Stretch of each lumped muscle.
-    stretches: BTreeMap<String, f64>,
+    stretches: BTreeMap<&'a str, f64>,
     /// Eigenvalues of the stiffness in joint coordinates, N m/rad for angles, N/m for displacements; where there are both, N mm for each rad and
     /// each length of the system.
     stiffness: Vec<f64>,
-    /// Motion of the softest mode, and the cause of its softness.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    softest_mode: Option<Softest>,
-    /// True if the equilibrium is stable, by them or by the inertia of the tangent; nothing where that is not known.
-    is_stable: Option<bool>,
-    /// Number of directions in which a disturbance grows.
-    unstable_directions: Option<usize>,
-    /// The lowest mode, where it decided without factors: then directions are those that were found.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    lowest_mode: Option<Lowest>,
-    /// `growing_loads`, `path_continued` or `damped_motion`.
-    route: &'static str,
-    /// State at which the path of growing loads loses its stable equilibrium, if this one does not lie on it.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    lost: Option<Lost>,
-    /// Newton iterations.
-    newton_iterations: usize,
-    /// Counts of an iteration with multigrid, where one led there.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    multigrid: Option<Entries>,
     /// Unit of the stiffness in the text, and the factor to it from that of the list.
-    #[serde(skip)]
     unit: (&'static str, f64),
-}
-
-/// The softest mode.
-#[derive(Debug, Serialize)]
-struct Softest {
-    /// Parts that move most.
-    moves: String,
-    /// `voltages`, `loads` (weights too) or `elastic_forces`; absent where nothing takes from the elastic stiffness.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    softened_by: Option<&'static str>,
-}
-
-/// The lowest eigenvalue of the stiffness of nodes, with potentials that follow.
-#[derive(Debug, Serialize)]
-struct Lowest {
-    /// Its quotient in N/m.
-    stiffness: f64,
-    /// Distance in N/m within which there is an eigenvalue.
-    bound: f64,
-    /// Iterations.
-    iterations: usize,
-}
-
-impl Lowest {
-    fn new(mode: &LowestMode) -> Self {
-        Self {
-            stiffness: 1e3 * mode.stiffness,
-            bound: 1e3 * mode.bound,
-            iterations: mode.iterations,
-        }
-    }
-}
-
-/// A loss of the stable equilibrium under a growing load.
-#[derive(Debug, Serialize)]
-struct Lost {
-    /// `loads`, which are weights too, or `voltages`.
-    load: &'static str,
-    /// Fraction of the load.
-    fraction: f64,
-    /// `pull_in`, `collapse`, `buckling` or `limit_point`.
-    kind: &'static str,
+    /// Largest electric field of an element of a block in its reference configuration in V/m.
+    largest_nominal_field: Option<f64>,
 }
 
 /// The word in files for how an equilibrium is lost.
@@ -122,92 +53,123 @@ fn kind(loss: StabilityLoss) -> &'static str {
 /// Unit of stiffness where coordinates are angles and places.
 const MIXED: &str = "N mm, coordinates in rad and lengths of the system";
 
-/// Describes an equilibrium; the last one where growing loads lose it.
-pub(super) fn describe(result: &EquilibriumResult, observed: &Observations) -> Rest {
-    let EquilibriumResult {
-        model,
-        found,
-        loss: failure,
-        discrete: state,
-        trajectory: motion,
-        ..
-    } = result;
-    let failure = *failure;
-    let system = &model.system;
-    let kept = solved(model, state, None);
-    let joints = system.joints.iter().zip(&kept.joints[0]);
-    let markers = system.markers.iter().zip(&motion.marks[0]);
-    let voltages = model.sources.iter().zip(&motion.voltages[0]);
-    let driven = voltages.filter(|(source, _)| source.takes_voltage);
-    let prismatic = |joint: &Joint| matches!(joint.kind, JointKind::Prismatic { .. });
-    let moving = || system.joints.iter().filter(|joint| joint.has_coordinate());
-    let (slides, turns) = (
-        moving().any(prismatic),
-        moving().any(|joint| !prismatic(joint)),
-    );
-    // From N mm/rad and N/mm to SI, and from there to the text.
-    let (factor, unit) = match (slides, turns) {
-        (false, _) => (1e-3, ("N mm/rad", 1e3)),
-        (true, false) => (1e3, ("N/mm", 1e-3)),
-        (true, true) => (1.0, (MIXED, 1.0)),
-    };
-    let stretches = observed.columns.iter().filter_map(|column| {
-        let muscle = column.name.strip_suffix("_stretch")?;
-        let value = column.values.first().filter(|v| v.is_finite())?;
-        Some((muscle.to_owned(), *value))
-    });
-    Rest {
-        voltages: driven.map(|(s, v)| (s.name.clone(), *v)).collect(),
-        fraction: failure.map(|loss| match loss.load {
+impl<'a> Rest<'a> {
+    /// Describes an equilibrium; the last one where growing loads lose it.
+    pub(super) fn new(result: &'a EquilibriumResult, observed: &'a Observations) -> Self {
+        let EquilibriumResult {
+            model,
+            found,
+            discrete,
+            trajectory,
+            ..
+        } = result;
+        let system = &model.system;
+        let coordinates = &solved(model, discrete, None).joints[0];
+        let moving = system.joints.iter().zip(coordinates);
+        let moving = moving.filter(|(joint, _)| joint.has_coordinate());
+        let prismatic = |joint: &Joint| matches!(joint.kind, JointKind::Prismatic { .. });
+        let slides = moving.clone().any(|(joint, _)| prismatic(joint));
+        let turns = moving.clone().any(|(joint, _)| !prismatic(joint));
+        // From N mm/rad and N/mm to SI, and from there to the text.
+        let (factor, unit) = match (slides, turns) {
+            (false, _) => (1e-3, ("N mm/rad", 1e3)),
+            (true, false) => (1e3, ("N/mm", 1e-3)),
+            (true, true) => (1.0, (MIXED, 1.0)),
+        };
+        let joints = moving.map(|(joint, &value)| {
+            let unit = if prismatic(joint) { 1e3 } else { 1.0 };
+            (joint.name.as_str(), value / unit)
+        });
+        let markers = system.markers.iter().zip(&trajectory.marks[0]);
+        let voltages = model.sources.iter().zip(&trajectory.voltages[0]);
+        let driven = voltages.filter(|(source, _)| source.takes_voltage);
+        let stretches = observed.columns.iter().filter_map(|column| {
+            let muscle = column.name.strip_suffix("_stretch")?;
+            let value = column.values.first().filter(|v| v.is_finite())?;
+            Some((muscle, *value))
+        });
+        Self {
+            voltages: driven.map(|(s, v)| (s.name.as_str(), *v)).collect(),
+            joints: joints.collect(),
+            markers: markers
+                .map(|(marker, place)| (marker.name.as_str(), (place / 1e3).into()))
+                .collect(),
+            stretches: stretches.collect(),
+            stiffness: found.stiffness.iter().map(|k| factor * k).collect(),
+            unit,
+            largest_nominal_field: fields::largest_nominal_field(model, discrete, 0),
+            result,
+        }
+    }
+
+    /// Its part of the summary.
+    pub(super) fn entries(&self) -> Entries {
+        let EquilibriumResult { found, loss, .. } = self.result;
+        let fraction = loss.map(|loss| match loss.load {
             Load::Forces => 0.0,
             Load::Voltages => loss.fraction,
-        }),
-        largest_nominal_field: fields::largest_nominal_field(model, state, 0),
-        joints: joints
-            .filter(|(joint, _)| joint.has_coordinate())
-            .map(|(joint, &value)| {
-                let unit = if prismatic(joint) { 1e3 } else { 1.0 };
-                (joint.name.clone(), value / unit)
-            })
-            .collect(),
-        markers: markers
-            .map(|(marker, place)| (marker.name.clone(), (place / 1e3).into()))
-            .collect(),
-        stretches: stretches.collect(),
-        stiffness: found.stiffness.iter().map(|k| factor * k).collect(),
-        softest_mode: found.softest.as_ref().map(|mode| Softest {
-            moves: mode.moves.clone(),
-            softened_by: mode.softening.map(|softening| match softening {
+        });
+        let softest = found.softest.as_ref().map(|mode| {
+            let softened_by = mode.softening.map(|softening| match softening {
                 Softening::Voltages => "voltages",
                 Softening::Loads => "loads",
                 Softening::Elastic => "elastic_forces",
-            }),
-        }),
-        is_stable: found.is_stable(),
-        unstable_directions: found.unstable,
-        route: match (failure, found.route) {
+            });
+            Entries::default()
+                .with("moves", &mode.moves)
+                // Absent where nothing takes from the elastic stiffness.
+                .with_some("softened_by", softened_by)
+        });
+        // Of the stiffness of nodes, with potentials that follow; in N/m.
+        let lowest = found.lowest.as_ref().map(|mode| {
+            Entries::default()
+                .with("stiffness", 1e3 * mode.stiffness)
+                // There is an eigenvalue within this distance.
+                .with("bound", 1e3 * mode.bound)
+                .with("iterations", mode.iterations)
+        });
+        let route = match (loss, found.route) {
             (Some(_), _) | (None, Route::Loads) => "growing_loads",
             (None, Route::Beyond(_)) => "path_continued",
             (None, Route::DampedMotion(_)) => "damped_motion",
-        },
-        lost: failure.or(found.loss()).map(|loss| Lost {
-            load: load(loss.load),
-            fraction: loss.fraction,
-            kind: status(loss),
-        }),
-        lowest_mode: found.lowest.as_ref().map(Lowest::new),
-        multigrid: found
-            .on_grids
-            .and_then(|(report, fallbacks)| multigrid(report, fallbacks)),
-        newton_iterations: found.iterations,
-        unit,
+        };
+        let lost = self.lost().map(|loss| {
+            Entries::default()
+                .with("load", load(loss.load))
+                .with("fraction", loss.fraction)
+                .with("kind", status(loss))
+        });
+        let grids = found.on_grids;
+        let grids = grids.and_then(|(report, fallbacks)| multigrid(report, fallbacks));
+        Entries::default()
+            .with("voltages", &self.voltages)
+            // Of the voltages asked for, where they were not reached.
+            .with_some("fraction", fraction)
+            .with_some("largest_nominal_field", self.largest_nominal_field)
+            .with("joints", &self.joints)
+            .with("markers", &self.markers)
+            .with("stretches", &self.stretches)
+            .with("stiffness", &self.stiffness)
+            .with_some("softest_mode", softest)
+            // Nothing where it is not known.
+            .with("is_stable", found.is_stable())
+            // Directions in which a disturbance grows; those that were found where the lowest mode decided.
+            .with("unstable_directions", found.unstable)
+            .with_some("lowest_mode", lowest)
+            .with("route", route)
+            .with_some("lost", lost)
+            .with("newton_iterations", found.iterations)
+            .with_some("multigrid", grids)
     }
-}
 
-impl Rest {
+    /// State at which the path of growing loads loses its stable equilibrium, if this one does not lie on it.
+    fn lost(&self) -> Option<StabilityLoss> {
+        self.result.loss.or(self.result.found.loss())
+    }
+
     /// `183.5 N mm/rad: joint1, stretch of muscle2 (at 0.7)`.
     fn softest(&self) -> Option<String> {
-        let moves = &self.softest_mode.as_ref()?.moves;
+        let moves = &self.result.found.softest.as_ref()?.moves;
         let (unit, factor) = self.unit;
         let number = self.stiffness.first();
         let number = number.map(|k| format!("{:.6} {unit}", factor * k));
@@ -226,25 +188,29 @@ impl Rest {
         })
     }
 
+    /// Voltages that are not zero in kV.
+    fn driven(&self) -> impl Iterator<Item = (&str, f64)> {
+        let all = self.voltages.iter().filter(|(_, v)| **v != 0.0);
+        all.map(|(name, v)| (*name, v / 1e3))
+    }
+
     /// `stable equilibrium`, and how it was found.
     pub(super) fn verdict(&self) -> String {
-        let mut text = match self.is_stable {
+        let found = &self.result.found;
+        let mut text = match found.is_stable() {
             Some(true) => "stable equilibrium",
             Some(false) => "unstable equilibrium",
             None => "equilibrium; its stability is not known",
         }
         .to_owned();
-        if let (Some(false), Some(count @ 1..)) = (self.is_stable, self.unstable_directions) {
-            let cause = match self.softest_mode.as_ref().and_then(|mode| mode.softened_by) {
-                Some("voltages") => "pull-in",
-                Some("loads") => "collapse under load",
-                _ => "buckling",
+        if let (Some(false), Some(count @ 1..)) = (found.is_stable(), found.unstable) {
+            let cause = match found.softest.as_ref().and_then(|mode| mode.softening) {
+                Some(Softening::Voltages) => "pull-in",
+                Some(Softening::Loads) => "collapse under load",
+                Some(Softening::Elastic) | None => "buckling",
             };
-            let directions = match count {
-                1 => "1 direction".to_owned(),
-                _ => format!("{count} directions"),
-            };
-            text.push_str(&match &self.lowest_mode {
+            let directions = counted(count, "direction");
+            text.push_str(&match &found.lowest {
                 None => format!(
                     ": a disturbance grows in {directions} ({cause}); no stable one was found on the path of growing loads, on its \
                      continuation, or by damped motion from them"
@@ -255,23 +221,22 @@ impl Rest {
                 ),
             });
         }
-        if let Some(Lowest {
+        if let Some(LowestMode {
             stiffness, bound, ..
-        }) = &self.lowest_mode
+        }) = &found.lowest
         {
             text.push_str(&format!(
-                "; by the lowest mode, {:.4e} ± {:.1e} N/mm for the vector of all nodes",
-                1e-3 * stiffness,
-                1e-3 * bound
+                "; by the lowest mode, {stiffness:.4e} ± {bound:.1e} N/mm for the vector of all nodes"
             ));
         }
-        if let (Some(lost), false) = (&self.lost, self.route == "growing_loads") {
-            let place = match self.route {
-                "path_continued" => "on the continued path",
-                _ => "by damped motion from an unstable state",
-            };
-            let what = lost.load;
-            let kind = lost.kind.replace('_', " ").replace("pull in", "pull-in");
+        let place = match (self.result.loss, found.route) {
+            (Some(_), _) | (None, Route::Loads) => return text,
+            (None, Route::Beyond(_)) => "on the continued path",
+            (None, Route::DampedMotion(_)) => "by damped motion from an unstable state",
+        };
+        if let Some(lost) = self.lost() {
+            let (what, kind) = (load(lost.load), status(lost).replace('_', " "));
+            let kind = kind.replace("pull in", "pull-in");
             text.push_str(&match lost.fraction > 0.0 {
                 true => format!(
                     " {place}: growing {what} lose theirs at {:.4} % ({kind})",
@@ -282,91 +247,85 @@ impl Rest {
         }
         text
     }
-}
 
-/// One line: the kind of loss, its loads, the parts that give way, and the last state.
-pub(super) fn lost(rest: &Rest, loss: StabilityLoss, folder: &Path) -> String {
-    let mut text = format!(
-        "no equilibrium was found, neither on the path of growing loads nor by damped motion from it: {} at {:.6} % of the {}",
-        kind(loss),
-        100.0 * loss.fraction,
-        load(loss.load)
-    );
-    let on = rest.voltages.iter().filter(|(_, v)| **v != 0.0);
-    for (name, v) in on {
-        text.push_str(&format!(", {name} = {:.6} kV", v / 1e3));
+    /// One line: the kind of loss, its loads, the parts that give way, and the last state.
+    pub(super) fn lost_words(&self, loss: StabilityLoss, folder: &Path) -> String {
+        let mut text = format!(
+            "no equilibrium was found, neither on the path of growing loads nor by damped motion from it: {} at {:.6} % of the {}",
+            kind(loss),
+            100.0 * loss.fraction,
+            load(loss.load)
+        );
+        for (name, kilovolts) in self.driven() {
+            text.push_str(&format!(", {name} = {kilovolts:.6} kV"));
+        }
+        let softest = self.result.found.softest.as_ref();
+        if let Some(mode) = softest.filter(|m| !m.moves.is_empty()) {
+            text.push_str(&format!("; softest motion: {}", mode.moves));
+        }
+        if let Some(field) = self.largest_nominal_field.filter(|field| *field > 0.0) {
+            text.push_str(&format!("; largest nominal field {:.3} MV/m", field / 1e6));
+        }
+        text.push_str(&format!("; the state there is in {}", folder.display()));
+        text
     }
-    if let Some(mode) = rest.softest_mode.as_ref().filter(|m| !m.moves.is_empty()) {
-        text.push_str(&format!("; softest motion: {}", mode.moves));
-    }
-    if let Some(field) = rest.largest_nominal_field.filter(|field| *field > 0.0) {
-        text.push_str(&format!("; largest nominal field {:.3} MV/m", field / 1e6));
-    }
-    text.push_str(&format!("; the state there is in {}", folder.display()));
-    text
-}
 
-/// Rows of the page.
-pub(super) fn rows(rest: &Rest, status: &str) -> Vec<(String, String)> {
-    let row = |name: &str, value: String| (name.to_owned(), value);
-    let mut rows = vec![row("status", status.replace('_', " "))];
-    rows.push(row(
-        "verdict",
-        match &rest.fraction {
-            None => rest.verdict(),
+    /// Rows of the page.
+    pub(super) fn rows(&self, status: &str) -> Vec<(String, String)> {
+        let verdict = match self.result.loss {
+            None => self.verdict(),
             Some(_) => "the last equilibrium of the path of growing loads".to_owned(),
-        },
-    ));
-    let on = rest.voltages.iter().filter(|(_, v)| **v != 0.0);
-    let on: Vec<String> = on
-        .map(|(name, v)| format!("{name} {:.4} kV", v / 1e3))
-        .collect();
-    if !on.is_empty() {
-        rows.push(row("voltages", on.join(", ")));
-    }
-    rows.extend(rest.softest().map(|text| row("softest mode", text)));
-    rows.extend(rest.stretched().map(|text| row("muscle stretches", text)));
-    rows
-}
-
-/// The equilibrium as lines of a table.
-pub(super) fn text(model: &Model, rest: &Rest) -> String {
-    let mut rows = Vec::new();
-    for joint in model.system.joints.iter().filter(|j| j.has_coordinate()) {
-        // What rounds to zero has no sign.
-        let value = rest.joints[&joint.name];
-        let value = if value.abs() < 5e-10 { 0.0 } else { value };
-        let (value, unit) = match joint.kind {
-            JointKind::Prismatic { .. } => (format!("{:.6}", 1e3 * value), "mm".to_owned()),
-            _ => (
-                format!("{value:.9}"),
-                format!("rad ({:.4}°)", value.to_degrees()),
-            ),
         };
-        rows.push(vec![joint.name.clone(), value, unit]);
+        let on = self.driven();
+        let on: Vec<String> = on.map(|(name, v)| format!("{name} {v:.4} kV")).collect();
+        let rows = [
+            ("status", Some(status.replace('_', " "))),
+            ("verdict", Some(verdict)),
+            ("voltages", (!on.is_empty()).then(|| on.join(", "))),
+            ("softest mode", self.softest()),
+            ("muscle stretches", self.stretched()),
+        ];
+        let rows = rows.into_iter();
+        rows.filter_map(|(name, value)| Some((name.to_owned(), value?)))
+            .collect()
     }
-    for marker in &model.system.markers {
-        let [x, y, z] = rest.markers[&marker.name].map(|x| format!("{:.6}", 1e3 * x));
-        rows.push(vec![marker.name.clone(), x, y, z, "mm".to_owned()]);
+
+    /// The equilibrium as lines of a table.
+    pub(super) fn text(&self) -> String {
+        let system = &self.result.model.system;
+        let mut rows = Vec::new();
+        for joint in system.joints.iter().filter(|j| j.has_coordinate()) {
+            // What rounds to zero has no sign.
+            let value = self.joints[&*joint.name];
+            let value = if value.abs() < 5e-10 { 0.0 } else { value };
+            let (value, unit) = match joint.kind {
+                JointKind::Prismatic { .. } => (format!("{:.6}", 1e3 * value), "mm".to_owned()),
+                _ => (
+                    format!("{value:.9}"),
+                    format!("rad ({:.4}°)", value.to_degrees()),
+                ),
+            };
+            rows.push(vec![joint.name.clone(), value, unit]);
+        }
+        for marker in &system.markers {
+            let [x, y, z] = self.markers[&*marker.name].map(|x| format!("{:.6}", 1e3 * x));
+            rows.push(vec![marker.name.clone(), x, y, z, "mm".to_owned()]);
+        }
+        let mut text = table::aligned(&rows);
+        if let Some(stretches) = self.stretched() {
+            text.push_str(&format!("muscle stretches  {stretches}\n"));
+        }
+        if !self.stiffness.is_empty() {
+            let (unit, factor) = self.unit;
+            let values = self.stiffness.iter();
+            let values: Vec<_> = values.map(|k| format!("{:.6}", factor * k)).collect();
+            text.push_str(&format!("stiffness  {} {unit}\n", values.join("  ")));
+        }
+        if let Some(mode) = self.softest() {
+            text.push_str(&format!("softest mode  {mode}\n"));
+        }
+        text + &self.verdict()
     }
-    let mut text = table::aligned(&rows);
-    if let Some(stretches) = rest.stretched() {
-        text.push_str(&format!("muscle stretches  {stretches}\n"));
-    }
-    if !rest.stiffness.is_empty() {
-        let (unit, factor) = rest.unit;
-        let values: Vec<_> = rest
-            .stiffness
-            .iter()
-            .map(|k| format!("{:.6}", factor * k))
-            .collect();
-        text.push_str(&format!("stiffness  {} {unit}\n", values.join("  ")));
-    }
-    if let Some(mode) = rest.softest() {
-        text.push_str(&format!("softest mode  {mode}\n"));
-    }
-    text.push_str(&rest.verdict());
-    text
 }
 
 /// Reduces observations to those of a state of rest: neither time nor rates nor what follows from them.
@@ -380,62 +339,4 @@ pub(super) fn at_rest(mut observed: Observations) -> Observations {
     let is_of_motion = |column: &Column| moves(&column.name) || is_rate(column.unit);
     observed.columns.retain(|column| !is_of_motion(column));
     observed
-}
-
-/// A path in `summary.json`.
-#[derive(Debug, Serialize)]
-pub(super) struct PathSummary {
-    /// Number of equilibria.
-    points: usize,
-    /// Largest fraction of the voltages on the path: of these equilibria and of those where stability is lost between them.
-    largest_fraction: f64,
-    /// Points at which stability is lost.
-    pub(super) lost: Vec<StabilityLossRecord>,
-}
-
-/// A loss of stability.
-#[derive(Debug, Serialize)]
-pub(super) struct StabilityLossRecord {
-    /// Exact fraction of the voltages.
-    pub(super) fraction: f64,
-    /// `pull_in` or `buckling`.
-    kind: &'static str,
-    /// The same in words.
-    #[serde(skip)]
-    pub(super) words: &'static str,
-}
-
-impl PathSummary {
-    pub(super) fn new(found: &Continuation) -> Self {
-        let loss = |&(_, fraction, kind): &(usize, f64, Instability)| StabilityLossRecord {
-            fraction,
-            kind: kind.key(),
-            words: kind.words(),
-        };
-        let lost = found.lost.iter().map(|&(_, fraction, _)| fraction);
-        let all = found.fractions.iter().copied().chain(lost);
-        Self {
-            points: found.points.len(),
-            largest_fraction: all.fold(0.0, f64::max),
-            lost: found.lost.iter().map(loss).collect(),
-        }
-    }
-
-    /// Rows of the page; `shown` is the fraction of the voltages of the equilibrium that is drawn.
-    pub(super) fn rows(&self, shown: f64) -> Vec<(String, String)> {
-        let mut rows = vec![
-            ("equilibria".to_owned(), self.points.to_string()),
-            (
-                "largest fraction of the voltages".to_owned(),
-                format!("{:.6} %", 100.0 * self.largest_fraction),
-            ),
-        ];
-        rows.extend(self.lost.iter().map(|loss| {
-            let place = format!("{:.6} % of the voltages", 100.0 * loss.fraction);
-            (loss.words.to_owned(), place)
-        }));
-        let place = format!("the equilibrium at {:.6} %", 100.0 * shown);
-        rows.push(("configuration".to_owned(), place));
-        rows
-    }
 }

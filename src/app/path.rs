@@ -1,10 +1,8 @@
 //! The path of equilibria under growing voltages, followed by arc length past the points where stability is lost.
 
 use std::ops::RangeInclusive;
-use std::path::Path;
 use std::time::Instant;
 
-use crate::app::equilibrium_summary::PathSummary;
 use crate::app::equilibrium_summary::at_rest;
 use crate::app::error::CommandError;
 use crate::app::fields;
@@ -20,7 +18,7 @@ use crate::dynamics::{
     Continuation, DiscreteTrajectory, Equilibrium, Instability, Reading, continuation,
     observations, out_of_domain,
 };
-use crate::files::Loaded;
+use crate::files::{Entries, Loaded};
 use crate::model::{Model, Role, System};
 use crate::nlp::Status;
 use crate::report::atomic::WriteError;
@@ -68,10 +66,7 @@ pub(super) fn follow(
     let (plan, uncounted) = plan(&model, stopped.is_some());
     summary.plan = plan;
     summary.notes.warn("left_out", uncounted);
-    let followed = PathSummary::new(&found);
-    let rows = followed.rows(path.stops[path.shown()].fraction);
-    let output = command_output(&followed, found.points.len(), stopped, &folder);
-    summary.path = Some(followed);
+    summary.path = Some(entries(&found));
     summary.domain = warnings::outside_domain(&out_of_domain(&model, &path.discrete));
     let note = warnings::domain_note(&summary.domain, false);
     summary.notes.warn("outside_domain", note);
@@ -81,45 +76,65 @@ pub(super) fn follow(
         ..Seconds::default()
     };
     let mut page = summary.page("Path of equilibria", loaded);
-    page.rows = rows;
+    page.rows = rows(&found, path.stops[path.shown()].fraction);
     page.plots.push(("Path".to_owned(), plot));
     path.write(request, &page, &mut files, &origin)?;
     summary.seconds.wrote(began, writing);
-    let notes = summary.notes.lines();
     summary.write(files)?;
-    Ok(CommandOutput {
-        notes: output.notes.into_iter().chain(notes).collect(),
-        ..output
-    })
-}
-
-/// The answer of the command without its warnings.
-fn command_output(
-    path: &PathSummary,
-    points: usize,
-    stopped: Option<Status>,
-    folder: &Path,
-) -> CommandOutput {
-    let losses = path.lost.iter().map(|loss| {
-        format!(
-            "{} at {:.6} % of the voltages",
-            loss.words,
-            100.0 * loss.fraction
-        )
-    });
+    let losses = losses(&found).map(|(words, place)| format!("{words} at {place}"));
     let early = stopped.map(|status| {
         let why = status.word().replace('_', " ");
         format!("the path was not followed to its end ({why})")
     });
-    CommandOutput {
+    let count = counted(found.points.len(), "equilibrium").replace("equilibriums", "equilibria");
+    Ok(CommandOutput {
         is_solved: stopped.is_none(),
-        result: format!(
-            "{}, {}",
-            counted(points, "equilibrium").replace("equilibriums", "equilibria"),
-            folder.display()
-        ),
-        notes: losses.chain(early).collect(),
-    }
+        result: format!("{count}, {}", folder.display()),
+        notes: losses.chain(early).chain(summary.notes.lines()).collect(),
+    })
+}
+
+/// Words on the losses of stability, and their places on the path.
+fn losses(found: &Continuation) -> impl Iterator<Item = (&'static str, String)> {
+    let place = |fraction: f64| format!("{:.6} % of the voltages", 100.0 * fraction);
+    let lost = found.lost.iter();
+    lost.map(move |&(_, fraction, kind)| (kind.words(), place(fraction)))
+}
+
+/// Largest fraction of the voltages on the path: of its equilibria and of those where stability is lost between them.
+fn largest_fraction(found: &Continuation) -> f64 {
+    let lost = found.lost.iter().map(|&(_, fraction, _)| fraction);
+    let all = found.fractions.iter().copied().chain(lost);
+    all.fold(0.0, f64::max)
+}
+
+/// The path in `summary.json`.
+fn entries(found: &Continuation) -> Entries {
+    let lost = found.lost.iter().map(|&(_, fraction, kind)| {
+        Entries::default()
+            .with("fraction", fraction)
+            .with("kind", kind.key())
+    });
+    Entries::default()
+        .with("points", found.points.len())
+        .with("largest_fraction", largest_fraction(found))
+        .with("lost", lost.collect::<Vec<_>>())
+}
+
+/// Rows of the page; `shown` is the fraction of the voltages of the equilibrium that is drawn.
+fn rows(found: &Continuation, shown: f64) -> Vec<(String, String)> {
+    let percent = |fraction: f64| format!("{:.6} %", 100.0 * fraction);
+    let largest = percent(largest_fraction(found));
+    let ends = [
+        ("equilibria", found.points.len().to_string()),
+        ("largest fraction of the voltages", largest),
+    ];
+    let shown = (
+        "configuration",
+        format!("the equilibrium at {}", percent(shown)),
+    );
+    let all = ends.into_iter().chain(losses(found)).chain([shown]);
+    all.map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
 /// An equilibrium of the path.

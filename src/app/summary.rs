@@ -3,8 +3,6 @@
 use crate::app::blocks::{BlockSizes, EnergySummary};
 use crate::app::comparison::Comparison;
 use crate::app::displayed_motion::ShownPart;
-use crate::app::equilibrium_summary::PathSummary;
-use crate::app::equilibrium_summary::Rest;
 use crate::app::error::CommandError;
 use crate::app::request::CommandInput;
 use crate::files::{Entries, Loaded, lay_out};
@@ -72,9 +70,9 @@ pub(super) struct Summary {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) comparison: Option<Comparison>,
     #[serde(flatten)]
-    pub(super) rest: Option<Rest>,
+    pub(super) rest: Option<Entries>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) path: Option<PathSummary>,
+    pub(super) path: Option<Entries>,
     /// Constants that were fitted to recordings.
     #[serde(flatten)]
     pub(super) identification: Option<Entries>,
