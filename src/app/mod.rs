@@ -51,7 +51,7 @@ pub(crate) use kept::cache::Identity;
 pub use kept::cache::run_once;
 pub(crate) use kept::overwrite_check::{make_folder, without_dots};
 pub(crate) use kept::record::{
-    Ending, FileRecords, FolderRecord, Found, OF_VARIANT, is_unfinished,
+    FileRecords, FolderRecord, Found, OF_VARIANT, WrittenSummary, is_unfinished,
 };
 pub use motions::compare;
 pub use multistart::{solve_from_starts, solve_text_from_starts};

@@ -3,8 +3,7 @@
 use crate::app::error::CommandError;
 use crate::app::kept::overwrite_check::make_folder_of;
 use crate::app::kept::partial_result::EARLIER;
-use crate::app::request::key;
-use crate::app::request::{CommandInput, CommandOutput};
+use crate::app::request::{CommandInput, CommandOutput, key};
 use crate::app::summary::Summary;
 use crate::control::problem::Task;
 use crate::dynamics::EquilibriumError;

@@ -10,8 +10,9 @@ use crate::app::kept::partial_result::{leave_out, time_to_write};
 use crate::app::kept::{resume_file, solution_file, unfinished};
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::solve_summary::{command_output, program, seconds};
-use crate::app::solve_summary::{convergence, goal, rows, targets, waypoints};
+use crate::app::solve_summary::{
+    command_output, convergence, goal, program, rows, seconds, targets, waypoints,
+};
 use crate::app::summary::{MEASURED, Summary};
 use crate::app::{feedback_files, fields, sensitivity_summary};
 use crate::control::problem::{Control, Regulator};

@@ -1,13 +1,14 @@
 //! Record of a solved variant in its folder: `variant.json`, written last, and the numbers of its results.
 
-use std::fs;
 use std::path::Path;
 
 use csv::ReaderBuilder;
 use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value};
 
-use crate::app::{Ending, FileRecords, FolderRecord, OF_VARIANT, RunEnd, Said, is_unfinished};
+use crate::app::{
+    FileRecords, FolderRecord, OF_VARIANT, RunEnd, Said, WrittenSummary, is_unfinished,
+};
 use crate::sweep::read::Variant;
 
 /// Begins the headings of numbers at the end of a motion, or at rest.
@@ -37,16 +38,6 @@ pub(super) struct VariantRecord {
     is_stopped_early: bool,
 }
 
-#[derive(Deserialize)]
-struct Summary {
-    #[serde(flatten)]
-    ending: Ending,
-    #[serde(default)]
-    objective: Option<f64>,
-    #[serde(default)]
-    iterations: Option<usize>,
-}
-
 impl VariantRecord {
     /// Makes the record of a variant that ended with this; the files of its solve are in `folder`.
     pub(super) fn from_end(variant: &Variant, end: &RunEnd, folder: &Path) -> Self {
@@ -67,8 +58,8 @@ impl VariantRecord {
             files: FileRecords::default(),
             is_stopped_early: false,
         };
-        if end.may_have_files() {
-            kept.read_results(folder);
+        if let Some(summary) = end.summary(folder) {
+            kept.read_results(summary, folder);
         }
         kept
     }
@@ -85,14 +76,9 @@ impl VariantRecord {
         is_unfinished(&self.status) || self.is_stopped_early
     }
 
-    fn read_results(&mut self, folder: &Path) {
-        let summary = fs::read_to_string(folder.join("summary.json")).ok();
-        let Some(summary) = summary.and_then(|text| serde_json::from_str::<Summary>(&text).ok())
-        else {
-            return;
-        };
-        self.is_stopped_early = summary.ending.is_unfinished();
-        self.status = summary.ending.status;
+    fn read_results(&mut self, summary: WrittenSummary, folder: &Path) {
+        self.is_stopped_early = summary.is_unfinished();
+        self.status = summary.status;
         self.message = None;
         let objective = summary.objective.map(Value::from);
         let iterations = summary.iterations.map(Value::from);

@@ -5,6 +5,7 @@
 //! The program holds one end of a pipe, of which the other one is the standard input of the process. The operating system closes
 //! what a program held when it is gone, also after `kill -9`, and the process reads the end of its input. Nothing is sent.
 
+use crate::app::kept::record::WrittenSummary;
 use crate::app::progress::ProgressDisplay;
 use crate::app::request::{CommandInput, PageWanted};
 use crate::control::problem::Task;
@@ -239,9 +240,12 @@ impl RunEnd {
         seconds: 0.0,
     };
 
-    /// Returns true if it came so far that it may have written its files.
-    pub(crate) fn may_have_files(&self) -> bool {
-        matches!(self.said, Said::Solved | Said::Unsolved(_))
+    /// The summary that it wrote into its folder, where it came so far.
+    pub(crate) fn summary(&self, folder: &Path) -> Option<WrittenSummary> {
+        let is_written = matches!(self.said, Said::Solved | Said::Unsolved(_));
+        is_written
+            .then(|| WrittenSummary::of_folder(folder))
+            .flatten()
     }
 
     /// Its words, where there are some.

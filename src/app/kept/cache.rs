@@ -2,7 +2,7 @@
 
 use crate::app::error::CommandError;
 use crate::app::kept::record::{
-    Ending, FileRecords, FolderRecord, Found, OF_RUN, digest, digest_of,
+    FileRecords, FolderRecord, Found, OF_RUN, WrittenSummary, digest, digest_of,
 };
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::{read, run};
@@ -45,7 +45,7 @@ pub fn run_once(request: &CommandInput) -> Result<CommandOutput, CommandError> {
         Found::Nothing => None,
     };
     let mut output = run(request)?;
-    if Ending::of_folder(&folder).is_some_and(|ending| !ending.is_unfinished()) {
+    if WrittenSummary::of_folder(&folder).is_some_and(|summary| !summary.is_unfinished()) {
         let mut record = Record {
             identity: identity.as_str().to_owned(),
             is_solved: output.is_solved,

@@ -1,18 +1,12 @@
 //! Detection of results of another problem in the folder to which results are to be written.
 
 use crate::app::error::CommandError;
+use crate::app::kept::record::WrittenSummary;
 use crate::app::request::CommandInput;
 use crate::report::atomic;
 use crate::report::atomic::WriteError;
-use serde::Deserialize;
 use std::fs;
 use std::path::{Component, Path, PathBuf};
-
-/// Entries of a summary that name the source of its results.
-#[derive(Deserialize)]
-struct Summary {
-    input: PathBuf,
-}
 
 /// Refuses to replace the results of another problem file, unless their folder was named.
 ///
@@ -40,8 +34,7 @@ pub(in crate::app) fn replaced(request: &CommandInput) -> Option<String> {
 
 /// The other problem file whose results the folder of a run has.
 fn foreign(request: &CommandInput) -> Option<PathBuf> {
-    let text = fs::read_to_string(request.folder().join("summary.json")).ok()?;
-    let Summary { input } = serde_json::from_str(&text).ok()?;
+    let WrittenSummary { input, .. } = WrittenSummary::of_folder(&request.folder())?;
     (!is_same(&input, &request.input)).then_some(input)
 }
 

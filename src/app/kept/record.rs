@@ -1,4 +1,4 @@
-//! The files of a result as they were written: their sizes and hashes, which a record in their folder keeps.
+//! The summary of a result as other runs read it, and its files as they were written: their sizes and hashes, which a record in their folder keeps.
 
 use crate::files::lay_out;
 use crate::report::atomic::{self, WriteError};
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fmt::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::{fmt, fs, io};
 
 /// Statuses that may be otherwise the next time.
@@ -26,25 +26,51 @@ pub(crate) fn is_unfinished(status: &str) -> bool {
     UNFINISHED.contains(&status)
 }
 
-/// The part of a summary that says how a run ended.
+/// Entries of a `summary.json` that other runs read.
 #[derive(Debug, Deserialize)]
-pub(crate) struct Ending {
+pub(crate) struct WrittenSummary {
+    /// The problem file as typed.
+    pub(crate) input: PathBuf,
     pub(crate) status: String,
     #[serde(default)]
-    notes: Remarks,
+    pub(crate) notes: Remarks,
+    pub(crate) objective: Option<f64>,
+    pub(crate) iterations: Option<usize>,
+    pub(crate) infeasibility: Option<f64>,
+    pub(crate) seconds: WrittenSeconds,
+    /// Motions with summaries of their own.
+    #[serde(default)]
+    pub(crate) motions: Vec<WrittenMotion>,
 }
 
-impl Ending {
-    /// The end of the run whose results a folder has.
+/// Wall time of a run in s.
+#[derive(Debug, Deserialize)]
+pub(crate) struct WrittenSeconds {
+    pub(crate) total: f64,
+}
+
+/// One of several motions, and its folder within that of the result.
+#[derive(Debug, Deserialize)]
+pub(crate) struct WrittenMotion {
+    pub(crate) name: String,
+    pub(crate) folder: PathBuf,
+}
+
+impl WrittenSummary {
+    /// The summary of the run whose results a folder has.
     pub(crate) fn of_folder(folder: &Path) -> Option<Self> {
-        let text = fs::read_to_string(folder.join("summary.json")).ok()?;
-        serde_json::from_str(&text).ok()
+        parsed(&folder.join("summary.json"))
     }
 
     /// Returns true if another attempt may end otherwise: the run failed, or a stop kept it from a better result.
     pub(crate) fn is_unfinished(&self) -> bool {
         is_unfinished(&self.status) || self.notes.have(STOPPED_EARLY)
     }
+}
+
+/// The value in a JSON file; none where it cannot be read.
+pub(crate) fn parsed<T: DeserializeOwned>(path: &Path) -> Option<T> {
+    serde_json::from_str(&fs::read_to_string(path).ok()?).ok()
 }
 
 /// The record of a run that is made once.

@@ -3,12 +3,11 @@
 use super::rank::Rank;
 use crate::app::batch::{RunEnd, Said};
 use crate::app::error::CommandError;
+use crate::app::kept::record::{WrittenSummary, parsed};
 use crate::app::request::CommandInput;
 use crate::stop;
-use crate::workflow::remark::Remarks;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Relative difference of the objectives of one optimum.
@@ -90,47 +89,6 @@ pub(super) struct Ended {
     pub(super) notes: Vec<String>,
 }
 
-/// Entries that are read of the summary of a start.
-#[derive(Deserialize)]
-struct Summary {
-    status: String,
-    objective: Option<f64>,
-    iterations: Option<usize>,
-    infeasibility: Option<f64>,
-    seconds: Seconds,
-    #[serde(default)]
-    notes: Remarks,
-    /// Motions with summaries of their own.
-    #[serde(default)]
-    motions: Vec<MotionFolder>,
-}
-
-/// The folder of one of several motions.
-#[derive(Deserialize)]
-struct MotionFolder {
-    name: String,
-    folder: PathBuf,
-}
-
-impl Summary {
-    /// The folders of motions within that of the result, and this one's own where it is of one motion.
-    fn folders(&self, path: &Path) -> Vec<PathBuf> {
-        match self.motions.is_empty() {
-            true => vec![path.to_owned()],
-            false => self
-                .motions
-                .iter()
-                .map(|one| path.join(&one.folder))
-                .collect(),
-        }
-    }
-}
-
-#[derive(Deserialize)]
-struct Seconds {
-    total: f64,
-}
-
 /// Entries that are read of the solution of a start.
 #[derive(Deserialize)]
 struct SolutionRecord {
@@ -154,9 +112,6 @@ impl Ended {
             });
         }
         let path = folder_of(folder, start.number);
-        let summary = end
-            .may_have_files()
-            .then(|| parsed(&path.join("summary.json")));
         let mut ended = Self {
             start: start.number,
             seed: start.seed,
@@ -164,7 +119,7 @@ impl Ended {
             is_held: true,
             ..Self::default()
         };
-        match summary.flatten() {
+        match end.summary(&path) {
             Some(summary) => ended.read(summary, &path, end.said == Said::Solved),
             None if end.said == Said::NotStarted => "not_started".clone_into(&mut ended.status),
             None if stop::requested() => "interrupted".clone_into(&mut ended.status),
@@ -177,12 +132,16 @@ impl Ended {
     }
 
     /// Takes the numbers of a summary, and voltages and notes of the motions beside it.
-    fn read(&mut self, summary: Summary, path: &Path, is_solved: bool) {
-        let folders = summary.folders(path);
+    fn read(&mut self, summary: WrittenSummary, path: &Path, is_solved: bool) {
+        let own = summary.motions.iter().map(|one| path.join(&one.folder));
+        let mut folders: Vec<PathBuf> = own.collect();
         let mut remarks = vec![(None, summary.notes)];
         for (motion, own) in summary.motions.iter().zip(&folders) {
-            let own = parsed::<Summary>(&own.join("summary.json"));
-            remarks.extend(own.map(|own| (Some(motion.name.clone()), own.notes)));
+            let own = WrittenSummary::of_folder(own);
+            remarks.extend(own.map(|own| (Some(&motion.name), own.notes)));
+        }
+        if folders.is_empty() {
+            folders.push(path.to_owned());
         }
         let solutions = folders.iter().filter(|_| is_solved);
         let solutions =
@@ -192,7 +151,12 @@ impl Ended {
         self.voltages = solutions
             .flat_map(|one| one.voltages.into_values().flatten())
             .collect();
-        self.notes = remarks.iter().flat_map(texts).collect();
+        for (motion, own) in &remarks {
+            let name = motion.map(|name| format!("motion \"{name}\": "));
+            let name = name.unwrap_or_default();
+            self.notes
+                .extend(own.lines().map(|line| format!("{name}{line}")));
+        }
         self.status = summary.status;
         self.objective = summary.objective;
         self.iterations = summary.iterations;
@@ -227,20 +191,6 @@ impl Ended {
                 .zip(&other.voltages)
                 .all(|(a, b)| close(*a, *b, SAME_VOLTAGE * largest))
     }
-}
-
-/// Remarks in words, with the name of the motion that they are on.
-fn texts((motion, remarks): &(Option<String>, Remarks)) -> Vec<String> {
-    let name = motion.as_ref().map(|name| format!("motion \"{name}\": "));
-    let name = name.unwrap_or_default();
-    remarks
-        .lines()
-        .map(|line| format!("{name}{line}"))
-        .collect()
-}
-
-fn parsed<T: for<'de> Deserialize<'de>>(path: &Path) -> Option<T> {
-    serde_json::from_str(&fs::read_to_string(path).ok()?).ok()
 }
 
 /// The best start: see [`Rank`]; none where no start left a point.

@@ -3,6 +3,7 @@
 use crate::app::batch::launch::{RunEnd, Said, of_status, words};
 use crate::app::error::CommandError;
 use crate::app::kept::overwrite_check::make_folder;
+use crate::app::kept::record::{WrittenSummary, parsed};
 use crate::app::request::CommandInput;
 use crate::report::atomic;
 use crate::report::atomic::WriteError;
@@ -45,8 +46,7 @@ impl Job {
     /// The server does not answer.
     pub(super) fn earlier(folder: &Path) -> Result<Option<Self>, CommandError> {
         let files = folder.join(FOLDER);
-        let text = fs::read_to_string(files.join("job.json")).unwrap_or_default();
-        let Ok(kept) = serde_json::from_str::<Kept>(&text) else {
+        let Some(kept) = parsed::<Kept>(&files.join("job.json")) else {
             return Ok(None);
         };
         let jobs = ask(&["job", "list", "--all"])?;
@@ -176,10 +176,9 @@ impl Task {
             ("failed", None) => Said::Failed(self.error.clone().unwrap_or(words)),
             _ => return None,
         };
-        Some(RunEnd {
-            said,
-            seconds: seconds(folder),
-        })
+        let summary = WrittenSummary::of_folder(folder);
+        let seconds = summary.map_or(0.0, |summary| summary.seconds.total);
+        Some(RunEnd { said, seconds })
     }
 
     /// The exit status that is in the words of the server; none where a signal ended it, or its worker was lost.
@@ -188,14 +187,6 @@ impl Task {
         let end = after.find(|c: char| !c.is_ascii_digit());
         after[..end.unwrap_or(after.len())].parse().ok()
     }
-}
-
-/// Wall time in s that a solve wrote into its summary.
-fn seconds(folder: &Path) -> f64 {
-    let text = fs::read_to_string(folder.join("summary.json")).unwrap_or_default();
-    let summary: Value = serde_json::from_str(&text).unwrap_or_default();
-    let total = summary.pointer("/seconds/total");
-    total.and_then(Value::as_f64).unwrap_or(0.0)
 }
 
 /// The command.
