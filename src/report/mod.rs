@@ -121,7 +121,7 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
     let behind: [Maker<'_>; 6] = [
         &|| {
             let is_marked = !system.markers.is_empty();
-            let svg = || tip_path::svg(system, &motions, (tracked, waypoints), view, origin);
+            let svg = || tip_path::svg(system, &motions, tracked, waypoints, view, origin);
             is_marked.then(|| ("tip_path.svg", svg()))
         },
         &|| figure("joint_angles.svg", curves::joint_plot(system, trajectory)),

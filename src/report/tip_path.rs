@@ -39,20 +39,22 @@ fn plane<'a>(points: impl Iterator<Item = &'a Vector3<f64>>) -> [usize; 2] {
 pub fn svg(
     system: &System,
     trajectories: &[(&str, &Trajectory)],
-    (tracked, waypoints): (&[Tracked], &[(usize, Vector3<f64>)]),
+    tracked: &[Tracked],
+    waypoints: &[(usize, Vector3<f64>)],
     view: Viewpoint,
     origin: &Origin,
 ) -> String {
     let all = trajectories.iter().flat_map(|(_, one)| &one.marks);
     let plane = view.plane().unwrap_or_else(|| plane(all.flatten()));
-    plot(system, trajectories, (tracked, waypoints), plane).svg(origin)
+    plot(system, trajectories, tracked, waypoints, plane).svg(origin)
 }
 
 /// The paths in the plane of two axes, horizontal first.
 pub(super) fn plot(
     system: &System,
     trajectories: &[(&str, &Trajectory)],
-    (tracked, waypoints): (&[Tracked], &[(usize, Vector3<f64>)]),
+    tracked: &[Tracked],
+    waypoints: &[(usize, Vector3<f64>)],
     [horizontal, vertical]: [usize; 2],
 ) -> LinePlot {
     let paths: Vec<_> = trajectories
@@ -109,10 +111,23 @@ pub(super) fn plot(
                 .unjoined(),
         );
     }
-    let axis = |i: usize| Axis::linear(format!("{} [mm]", ["x", "y", "z"][i]), Extent::Padded);
+    in_plane([horizontal, vertical], series)
+}
+
+/// Names of the axes.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Name of a plane, horizontal axis first.
+pub(super) fn plane_name(plane: [usize; 2]) -> String {
+    plane.map(|axis| AXES[axis]).join("–")
+}
+
+/// Curves in a plane, in mm.
+pub(super) fn in_plane(plane: [usize; 2], series: Vec<Series>) -> LinePlot {
+    let [x, y] = plane.map(|i| Axis::linear(format!("{} [mm]", AXES[i]), Extent::Padded));
     LinePlot {
         aspect: Aspect::Equal,
         frame: [400.0, 300.0],
-        ..LinePlot::new(axis(horizontal), axis(vertical), series)
+        ..LinePlot::new(x, y, series)
     }
 }

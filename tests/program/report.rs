@@ -219,7 +219,8 @@ fn what_is_not_finite_is_not_drawn() {
         tip_path::svg(
             &system,
             &[("swing", &trajectory)],
-            (&[], &[(0, Vector3::new(1.0, 2.0, 3.0))]),
+            &[],
+            &[(0, Vector3::new(1.0, 2.0, 3.0))],
             Viewpoint::Oblique,
             &origin(),
         ),

@@ -15,6 +15,9 @@ const PANELS: usize = 12;
 /// Most points of a curve.
 const POINTS: usize = 2000;
 
+/// Planes in which paths are drawn, horizontal axis first.
+pub(super) const PLANES: [[usize; 2]; 3] = [[0, 1], [2, 1], [0, 2]];
+
 /// All charts of a run, in the order of the page.
 pub(super) fn charts(run: &Run<'_>, content: &PageContent) -> Vec<Value> {
     let mut charts = Vec::new();
@@ -175,22 +178,16 @@ fn of_time((label, curves): (&str, Vec<Series>)) -> Option<Value> {
 fn paths(run: &Run<'_>) -> Option<Value> {
     let mut motions: Vec<_> = run.comparison.into_iter().collect();
     motions.push((run.name, run.trajectory));
-    let planes = [[0, 1], [2, 1], [0, 2]];
-    let panels = planes.map(|plane| {
-        let plot = tip_path::plot(run.system, &motions, (run.tracked, run.waypoints), plane);
-        let name = format!(
-            "{}–{}",
-            ["x", "y", "z"][plane[0]],
-            ["x", "y", "z"][plane[1]]
-        );
-        panel(&name, &plot)
+    let panels = PLANES.map(|plane| {
+        let plot = tip_path::plot(run.system, &motions, run.tracked, run.waypoints, plane);
+        panel(&tip_path::plane_name(plane), &plot)
     });
     let is_any = !run.system.markers.is_empty();
     is_any.then(|| json!({ "title": "Paths of the markers", "kind": "plot", "panels": panels }))
 }
 
 /// A plot with its axes.
-fn panel(title: &str, plot: &LinePlot) -> Value {
+pub(super) fn panel(title: &str, plot: &LinePlot) -> Value {
     json!({
         "title": title,
         "x": axis(&plot.x.label, plot.x.scale),
@@ -200,11 +197,11 @@ fn panel(title: &str, plot: &LinePlot) -> Value {
     })
 }
 
-pub(super) fn axis(label: &str, scale: Scale) -> Value {
+fn axis(label: &str, scale: Scale) -> Value {
     json!({ "label": label, "log": scale == Scale::Log })
 }
 
-pub(super) fn series(series: &Series) -> Value {
+fn series(series: &Series) -> Value {
     json!({
         "name": series.name,
         "colour": series.colour.hex(),

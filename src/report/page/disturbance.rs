@@ -2,18 +2,15 @@
 
 use serde_json::{Value, json};
 
-use crate::report::axes::Scale;
-use crate::report::lines::{Series, over_time};
-use crate::report::page::charts::{axis, series};
+use crate::report::lines::{LinePlot, Series, over_time};
+use crate::report::page::charts::{PLANES, panel};
 use crate::report::style::{self, Dash};
+use crate::report::tip_path;
 use crate::workflow::Tracked;
 use crate::workflow::closed_loop::DisturbedLoop;
 
 /// The part that is the problem itself.
 const WHOLE: f64 = 1.0;
-/// Planes in which paths are drawn, horizontal axis first.
-const PLANES: [[usize; 2]; 3] = [[0, 1], [2, 1], [0, 2]];
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The chart of the parts; none where there are not several.
 pub(super) fn chart(parts: &[DisturbedLoop]) -> Option<Value> {
@@ -33,107 +30,82 @@ pub(super) fn chart(parts: &[DisturbedLoop]) -> Option<Value> {
     })
 }
 
-/// The panels of a marker or a joint.
+/// The panels of a marker or a joint: its path in planes or over time, and its distance from the reference.
 fn panels(parts: &[DisturbedLoop], place: usize) -> Vec<Value> {
     let first = &parts[0].closed.tracked[place];
     let name = &first.name;
-    let mut out = Vec::new();
-    if first.kind == "marker" {
-        for plane in PLANES {
-            let [a, b] = plane.map(|axis| AXES[axis]);
-            let label = |axis: &str| format!("{axis} [mm]");
-            let of = |one: &Tracked, _: &[f64], is_reference: bool| {
-                let along = plane.map(|axis| path(one, axis, is_reference, 1.0));
-                let [a, b] = along;
-                a.into_iter().zip(b).map(|(a, b)| [a, b]).collect()
-            };
-            let title = format!("{name}, {a}–{b}");
-            let curves = curves(parts, place, (&of, true));
-            out.push(panel(&title, [&label(a), &label(b)], true, curves));
-        }
-    } else {
-        let (unit, factor) = unit(first);
-        let of = |one: &Tracked, times: &[f64], is_reference: bool| {
-            over_time(times, path(one, 0, is_reference, factor))
-        };
-        let label = format!("{name} [{unit}]");
-        let curves = curves(parts, place, (&of, true));
-        out.push(panel(name, ["time [s]", &label], false, curves));
-    }
-    let (unit, factor) = unit(first);
-    let of = |one: &Tracked, times: &[f64], _: bool| {
-        over_time(times, one.deviation.iter().map(|v| factor * v))
-    };
-    let label = format!("deviation [{unit}]");
-    let title = format!("{name}, distance from the reference");
-    let curves = curves(parts, place, (&of, false));
-    out.push(panel(&title, ["time [s]", &label], false, curves));
-    out
-}
-
-/// Unit of what is tracked, and its factor from mm or rad.
-fn unit(of: &Tracked) -> (&'static str, f64) {
-    match of.unit {
+    let (unit, factor) = match first.unit {
         "m" => ("mm", 1.0),
         _ => ("°", 1_f64.to_degrees()),
-    }
-}
-
-/// Values or references along a direction.
-fn path(of: &Tracked, axis: usize, is_reference: bool, factor: f64) -> Vec<f64> {
-    let path = &of.paths[axis.min(of.paths.len() - 1)];
-    let values = if is_reference {
-        &path.reference
-    } else {
-        &path.value
     };
-    values.iter().map(|value| factor * value).collect()
+    let scaled = |values: &[f64]| values.iter().map(|v| factor * v).collect::<Vec<_>>();
+    let mut panels = Vec::new();
+    if first.kind == "marker" {
+        for plane in PLANES {
+            let points = |one: &Tracked, _: &[f64]| {
+                let [a, b] = plane.map(|axis| &one.paths[axis.min(one.paths.len() - 1)].value);
+                a.iter().zip(b).map(|(&a, &b)| [a, b]).collect()
+            };
+            let title = format!("{name}, {}", tip_path::plane_name(plane));
+            let plot = tip_path::in_plane(plane, Vec::new());
+            panels.push(panel_of(parts, place, &title, plot, &points, true));
+        }
+    } else {
+        let points = |one: &Tracked, times: &[f64]| over_time(times, scaled(&one.paths[0].value));
+        let plot = LinePlot::over_time(format!("{name} [{unit}]"), Vec::new());
+        panels.push(panel_of(parts, place, name, plot, &points, true));
+    }
+    let points = |one: &Tracked, times: &[f64]| over_time(times, scaled(&one.deviation));
+    let title = format!("{name}, distance from the reference");
+    let plot = LinePlot::over_time(format!("deviation [{unit}]"), Vec::new());
+    panels.push(panel_of(parts, place, &title, plot, &points, false));
+    panels
 }
 
-type Points<'a> = &'a dyn Fn(&Tracked, &[f64], bool) -> Vec<[f64; 2]>;
+/// Points of a curve of what is tracked at times in ms.
+type Points<'a> = &'a dyn Fn(&Tracked, &[f64]) -> Vec<[f64; 2]>;
 
-/// Curves of all parts, with their numbers, and the reference, which is the same for all.
-fn curves(
+/// A panel with the curves of all parts, each with the number of its part, and the reference, which is the same for all.
+fn panel_of(
     parts: &[DisturbedLoop],
     place: usize,
-    (points, has_reference): (Points<'_>, bool),
-) -> Vec<Value> {
-    let mut out = Vec::new();
+    title: &str,
+    mut plot: LinePlot,
+    points: Points<'_>,
+    has_reference: bool,
+) -> Value {
+    let mut sizes = Vec::new();
     let mut add = |curve: Series, size: Option<usize>| {
-        let mut value = series(&curve);
-        value["size"] = size.into();
-        out.push(value);
+        plot.series.push(curve);
+        sizes.push(size);
     };
     for (size, part) in parts.iter().enumerate() {
-        let open = part.closed.open_loop.as_ref().map(|open| &*open.times);
-        let open = open.zip(part.closed.tracked_open.get(place));
-        if let Some((times, tracked)) = open {
-            let points = points(tracked, times, false);
-            add(
-                Series::curve("without feedback", points, style::MUTED),
-                Some(size),
-            );
+        let open = part.closed.open_loop.as_ref();
+        if let Some((open, tracked)) = open.zip(part.closed.tracked_open.get(place)) {
+            let points = points(tracked, &open.times);
+            let curve = Series::curve("without feedback", points, style::MUTED);
+            add(curve, Some(size));
         }
         if let Some(tracked) = part.closed.tracked.get(place) {
-            let points = points(tracked, &part.times, false);
+            let points = points(tracked, &part.times);
             let mut curve = Series::curve("with feedback", points, style::hue(0));
             curve.width = 2.0;
             add(curve, Some(size));
         }
     }
-    if has_reference {
-        // A motion that ended early has a part of it.
-        let longest = parts.iter().max_by_key(|part| part.times.len());
-        if let Some(part) = longest {
-            let points = points(&part.closed.tracked[place], &part.times, true);
-            let curve = Series::curve("reference", points, style::INK);
-            add(curve.dashed(Dash::Dashed), None);
-        }
+    // A motion that ended early has a part of it.
+    let longest = parts.iter().max_by_key(|part| part.times.len());
+    if let Some(part) = longest.filter(|_| has_reference) {
+        let mut followed = part.closed.tracked[place].clone();
+        let paths = followed.paths.iter_mut();
+        paths.for_each(|path| path.value.clone_from(&path.reference));
+        let points = points(&followed, &part.times);
+        let curve = Series::curve("reference", points, style::INK);
+        add(curve.dashed(Dash::Dashed), None);
     }
-    out
-}
-
-fn panel(title: &str, axes: [&str; 2], is_equal: bool, curves: Vec<Value>) -> Value {
-    let [x, y] = axes.map(|label| axis(label, Scale::Linear));
-    json!({ "title": title, "x": x, "y": y, "equal": is_equal, "series": curves })
+    let mut value = panel(title, &plot);
+    for (k, size) in sizes.into_iter().enumerate() {
+        value["series"][k]["size"] = size.into();
+    }
+    value
 }
