@@ -2,7 +2,7 @@
 
 use crate::math::significant;
 use crate::report::table::aligned;
-use crate::study::compare::Judged;
+use crate::study::compare::{Judged, MethodErrors};
 use crate::study::limit::How;
 use crate::study::measure::{StudyMeasure, Unit};
 use crate::study::schedule::{Done, Results};
@@ -34,11 +34,12 @@ struct CostAtAccuracy {
 impl CostAtAccuracy {
     fn new(results: &Results<'_>, judged: &Judged, accuracy: f64) -> Self {
         let error = accuracy * judged.scale;
-        let cost = |(m, points): (usize, &Vec<Done<'_>>)| {
-            let at = |part: f64| cost(points, part, |k| surely(judged, m, k), error);
+        let methods = results.methods.iter().zip(&judged.methods);
+        let costs = methods.map(|(points, errors)| {
+            let at = |part: f64| cost(points, part, errors, error);
             Some([at(0.25)?, at(0.5)?, at(0.75)?])
-        };
-        let costs: Vec<_> = results.methods.iter().enumerate().map(cost).collect();
+        });
+        let costs: Vec<_> = costs.collect();
         let reached = costs.iter().enumerate();
         let mut reached: Vec<_> = reached
             .filter_map(|(m, cost)| Some((m, (*cost)?)))
@@ -65,7 +66,8 @@ pub fn cost_table(results: &Results<'_>, judged: &[Judged]) -> String {
     for judged in judged.iter().filter(|judged| judged.measure.has_order()) {
         let costs = ACCURACIES.map(|accuracy| CostAtAccuracy::new(results, judged, accuracy));
         for (m, method) in results.study.methods.iter().enumerate() {
-            let order = judged.orders[m].map(|order| format!("{order:.2}"));
+            let own = &judged.methods[m];
+            let order = own.order.map(|order| format!("{order:.2}"));
             let cost = |at: &CostAtAccuracy| {
                 let star = match at.cheapest.contains(&m) && results.study.methods.len() > 1 {
                     true => "*",
@@ -73,7 +75,7 @@ pub fn cost_table(results: &Results<'_>, judged: &[Judged]) -> String {
                 };
                 at.costs[m].map(|[_, median, _]| format!("{}{star}", significant(median, 3)))
             };
-            let errors = (0..judged.errors[m].len()).filter_map(|k| surely(judged, m, k));
+            let errors = (0..own.errors.len()).filter_map(|k| own.surely(k));
             let least = errors.reduce(f64::min);
             let least = least.map(|error| error_text(judged.measure.unit(), error));
             let mut row = vec![judged.measure.key().replace('_', " "), method.name.clone()];
@@ -82,7 +84,7 @@ pub fn cost_table(results: &Results<'_>, judged: &[Judged]) -> String {
                 .chain(costs.iter().map(cost))
                 .chain([least]);
             row.extend(cells.map(|cell| cell.unwrap_or_else(|| "–".to_owned())));
-            row.push(status(results, judged, m));
+            row.push(status(&results.methods[m], own));
             rows.push(row);
         }
     }
@@ -90,24 +92,21 @@ pub fn cost_table(results: &Results<'_>, judged: &[Judged]) -> String {
 }
 
 /// The parts of a measure of a method that are not resolved.
-fn status(results: &Results<'_>, judged: &Judged, method: usize) -> String {
-    let points = &results.methods[method];
+fn status(points: &[Done<'_>], judged: &MethodErrors) -> String {
     let count = |is: fn(&Done<'_>) -> bool| points.iter().filter(|done| is(done)).count();
     let unanswered = count(|done| !done.first.is_solved);
     let halved = count(|done| done.halved() > 0);
     let whole = (0..points.len()).filter(|&k| points[k].halved() == 0);
-    let known: Vec<f64> = whole.filter_map(|k| judged.known(method, k)).collect();
+    let known: Vec<f64> = whole.filter_map(|k| judged.known(k)).collect();
     let rises = known
         .windows(2)
         .any(|pair| pair[1] > (1.0 + RISE) * pair[0]);
-    let how = judged.limit_of(method).map(|limit| limit.how);
+    let how = judged.limit.as_ref().map(|limit| limit.how);
     let open = [
         (unanswered > 0).then(|| format!("{unanswered} of {} without an answer", points.len())),
         (halved > 0).then(|| format!("{halved} of {} with halved steps", points.len())),
         rises.then(|| "errors rise".to_owned()),
-        judged.orders[method]
-            .is_none()
-            .then(|| "no order".to_owned()),
+        judged.order.is_none().then(|| "no order".to_owned()),
         matches!(how, Some(How::NoOrder | How::TooFew))
             .then(|| "limit not extrapolated".to_owned()),
     ];
@@ -155,9 +154,9 @@ fn reached(results: &Results<'_>, judged: &Judged) -> String {
             );
         }
     }
-    let all = judged.errors.iter().enumerate();
-    let all = all.flat_map(|(m, errors)| (0..errors.len()).map(move |k| (m, k)));
-    let known = all.filter_map(|(m, k)| Some((m, surely(judged, m, k)?)));
+    let all = judged.methods.iter().enumerate();
+    let all = all.flat_map(|(m, own)| (0..own.errors.len()).map(move |k| (m, own.surely(k))));
+    let known = all.filter_map(|(m, error)| Some((m, error?)));
     match known.min_by(|a, b| a.1.total_cmp(&b.1)) {
         Some((m, error)) => {
             let (coarsest, error) = (error_text(unit, costs[0].error), error_text(unit, error));
@@ -170,22 +169,12 @@ fn reached(results: &Results<'_>, judged: &Judged) -> String {
     }
 }
 
-/// The error that a point does not exceed: its distance from the reference, and the uncertainty of that.
-fn surely(judged: &Judged, method: usize, point: usize) -> Option<f64> {
-    Some(judged.errors[method][point]? + judged.floors[method])
-}
-
 /// Seconds, of the given quantile, until errors are `wanted`: between the first point that is so accurate and the one before;
 /// those of the first point, where it is.
-fn cost(
-    points: &[Done<'_>],
-    quantile: f64,
-    error: impl Fn(usize) -> Option<f64>,
-    wanted: f64,
-) -> Option<f64> {
+fn cost(points: &[Done<'_>], quantile: f64, errors: &MethodErrors, wanted: f64) -> Option<f64> {
     let known = points.iter().enumerate();
     let known: Vec<[f64; 2]> = known
-        .filter_map(|(k, done)| Some([done.quantile(quantile)?, error(k)?]))
+        .filter_map(|(k, done)| Some([done.quantile(quantile)?, errors.surely(k)?]))
         .collect();
     let first = known.iter().position(|point| point[1] <= wanted)?;
     let Some(before) = first.checked_sub(1) else {

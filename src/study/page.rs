@@ -8,7 +8,7 @@ use crate::study::compare::{Judged, common};
 use crate::study::costs;
 use crate::study::measure::StudyMeasure;
 use crate::study::read::Study;
-use crate::study::record::{command, machine, of_reference};
+use crate::study::record::{command, machine};
 use crate::study::schedule::Results;
 
 /// The page; `figures` are the names of those written, by measure.
@@ -78,9 +78,7 @@ fn section(study: &Study, judged: &Judged, figure: Option<&str>) -> String {
         Some(name) => text.push_str(&format!("![{label} against seconds]({name})\n\n")),
         None => text.push_str("No error is above zero and above the uncertainty of its reference: nothing is drawn.\n\n"),
     }
-    for (index, limit) in judged.limits.iter().enumerate() {
-        let Some(limit) = limit else { continue };
-        let name = of_reference(study, judged, index);
+    for (name, limit) in judged.limits(study) {
         let unit = judged.measure.unit().suffix().trim_matches([' ', '[', ']']);
         let value = match limit.value.as_slice() {
             [value] => format!(" {value:.12}"),
@@ -140,7 +138,7 @@ pub(super) fn plot_diagram(results: &Results<'_>, judged: &Judged) -> Option<Lin
     let mut series = Vec::new();
     for (m, (method, points)) in results.each().enumerate() {
         let drawn = points.iter().enumerate().filter_map(|(k, done)| {
-            let place = [done.median()?, judged.known(m, k)?];
+            let place = [done.median()?, judged.methods[m].known(k)?];
             Some((place, done.point.label.clone()))
         });
         let (places, mut labels): (Vec<_>, Vec<_>) = drawn.unzip();
@@ -153,7 +151,7 @@ pub(super) fn plot_diagram(results: &Results<'_>, judged: &Judged) -> Option<Lin
                 label.clear();
             }
         }
-        let name = match judged.orders[m] {
+        let name = match judged.methods[m].order {
             Some(order) => format!("{}, order {order:.1}", method.name),
             None => method.name.clone(),
         };

@@ -7,10 +7,10 @@ use crate::report::atomic::WriteError;
 use crate::report::origin::Origin;
 use crate::report::{atomic, quoting};
 use crate::study::compare::{Judged, common};
-use crate::study::limit::{How, SequenceLimit};
+use crate::study::limit::How;
 use crate::study::measure::StudyTask;
 use crate::study::outcome::FINER;
-use crate::study::read::{Reference, Study, StudyPoint};
+use crate::study::read::{Study, StudyPoint};
 use crate::study::schedule::{Done, Results};
 use crate::workflow::parallel_map::cores;
 use serde::Serialize;
@@ -80,40 +80,27 @@ pub(super) fn write(
 fn of_measure(study: &Study, judged: &Judged) -> Entries {
     let measure = judged.measure;
     let si = |value: f64| measure.unit().to_si(value);
-    let of = |(index, limit): (usize, &Option<SequenceLimit>)| {
-        let limit = limit.as_ref()?;
+    let limits = judged.limits(study).into_iter().map(|(method, limit)| {
         let value = limit.value.iter().map(|&x| si(x));
-        Some(
-            Entries::default()
-                .with("method", of_reference(study, judged, index))
-                .with("how", limit.how.words())
-                .with("is_extrapolated", limit.how == How::Extrapolated)
-                // Observed in each three successive points; nothing where it is not sensible.
-                .with("orders", &limit.orders)
-                .with("uncertainty", limit.uncertainty.map(si))
-                .with("value", value.collect::<Vec<_>>()),
-        )
-    };
+        Entries::default()
+            .with("method", method)
+            .with("how", limit.how.words())
+            .with("is_extrapolated", limit.how == How::Extrapolated)
+            // Observed in each three successive points; nothing where it is not sensible.
+            .with("orders", &limit.orders)
+            .with("uncertainty", limit.uncertainty.map(si))
+            .with("value", value.collect::<Vec<_>>())
+    });
     let unit = match measure.unit().suffix() {
         "" => "1",
         _ => "m",
     };
-    let limits = judged.limits.iter().enumerate().filter_map(of);
     Entries::default()
         .with("measure", measure)
         .with("unit", unit)
         // Size to which an error is relative.
         .with("scale", si(judged.scale))
         .with("references", limits.collect::<Vec<_>>())
-}
-
-/// Name of the method that limit `index` is of.
-pub(super) fn of_reference<'s>(study: &'s Study, judged: &Judged, index: usize) -> &'s str {
-    let method = match (&study.reference, judged.is_shared) {
-        (Reference::Of { method, .. }, true) => *method,
-        _ => index,
-    };
-    &study.methods[method].name
 }
 
 /// A method with its points and the order that the errors of each measure show.
@@ -123,7 +110,7 @@ fn of_method(results: &Results<'_>, m: usize, judged: &[Judged]) -> Entries {
     let points = points.map(|(k, done)| of_point(results.study, done, judged, [m, k]));
     let orders = judged
         .iter()
-        .filter_map(|j| Some((j.measure, j.orders[m]?)));
+        .filter_map(|j| Some((j.measure, j.methods[m].order?)));
     Entries::default()
         .with("name", &method.name)
         .with("refined", &method.refined)
@@ -136,9 +123,9 @@ fn of_point(study: &Study, done: &Done<'_>, judged: &[Judged], [m, k]: [usize; 2
     let si = |judged: &Judged, x: f64| judged.measure.unit().to_si(x);
     let errors = judged
         .iter()
-        .filter_map(|j| Some((j.measure, si(j, j.errors[m][k]?))));
+        .filter_map(|j| Some((j.measure, si(j, j.methods[m].errors[k]?))));
     let values = judged.iter().filter_map(|j| {
-        let value = j.values[m][k].as_ref()?;
+        let value = j.methods[m].values[k].as_ref()?;
         Some((
             j.measure,
             value.iter().map(|&x| si(j, x)).collect::<Vec<_>>(),

@@ -42,6 +42,12 @@ impl<'a> Results<'a> {
         [solved, points().count()]
     }
 
+    /// Observations of all answers, those of the reference last.
+    pub(super) fn seen(&self) -> impl Iterator<Item = &Observed> {
+        let points = self.methods.iter().flatten().chain(&self.reference);
+        points.filter_map(|done| done.seen.as_ref())
+    }
+
     /// The methods with their points.
     pub fn each(&self) -> impl Iterator<Item = (&'a Method, &[Done<'a>])> {
         let points = self.methods.iter().map(Vec::as_slice);

@@ -4,6 +4,7 @@ use crate::math::significant;
 use crate::report::origin::Origin;
 use crate::report::table::{aligned, cells_csv};
 use crate::study::compare::Judged;
+use crate::study::read::Method;
 use crate::study::schedule::Results;
 
 /// One row per point: its method, its input, how it ended, seconds and errors; each number reads back identical.
@@ -43,7 +44,11 @@ pub(super) fn csv(results: &Results<'_>, judged: &[Judged], origin: &Origin) -> 
             row.extend(seconds);
             row.push(iterations.unwrap_or_default());
             row.push(done.halved().to_string());
-            row.extend(judged.iter().map(|judged| full(judged.errors[m][k])));
+            row.extend(
+                judged
+                    .iter()
+                    .map(|judged| full(judged.methods[m].errors[k])),
+            );
             rows.push(row);
         }
     }
@@ -59,8 +64,7 @@ fn full(value: Option<f64>) -> String {
 ///
 /// An error that is no larger than the uncertainty of the reference is reported as less than both together.
 pub(super) fn text(results: &Results<'_>, judged: &[Judged]) -> String {
-    let same =
-        |method: &crate::study::read::Method| method.refined == results.study.methods[0].refined;
+    let same = |method: &Method| method.refined == results.study.methods[0].refined;
     let refined = match results.study.methods.iter().all(same) {
         true => results.study.methods[0].refined.clone(),
         false => "refined".to_owned(),
@@ -82,10 +86,11 @@ pub(super) fn text(results: &Results<'_>, judged: &[Judged]) -> String {
                 done.median().map_or_else(dash, |s| significant(s, 3)),
                 iterations.unwrap_or_else(dash),
             ];
-            row.extend(judged.iter().map(|judged| match judged.errors[m][k] {
+            let own = judged.iter().map(|judged| &judged.methods[m]);
+            row.extend(own.map(|own| match own.errors[k] {
                 None => dash(),
-                Some(error) if judged.known(m, k).is_none() && judged.floors[m] > 0.0 => {
-                    format!("<{:.1e}", judged.floors[m] + error)
+                Some(error) if own.known(k).is_none() && own.floor > 0.0 => {
+                    format!("<{:.1e}", own.floor + error)
                 }
                 Some(0.0) => "0".to_owned(),
                 Some(error) => format!("{error:.2e}"),
