@@ -51,40 +51,33 @@ pub(super) fn simulation(
         began,
         // What is kept of halved steps, which begin anew, or of a controller is no motion to go on with.
         resumable: (request.wanted.is_none() && task.controller.is_none()).then_some(&*problem),
-        loops: &[],
-        left_out: &[],
     };
     let from = request.from.as_ref();
     let begun = from.map(|from| resume_file::begun(from, &problem, task));
     let begun = begun.transpose()?;
     let read = began.elapsed().as_secs_f64();
-    let (mut ended, folder) = integrate(&run, begun, read, observer)?;
+    let (result, folder) = integrate(&run, begun, read, observer)?;
     phase("writing");
-    let (loops, left_out) = disturbed(&run, &mut ended)?;
-    let run = Run {
-        loops: &loops,
-        left_out: &left_out,
-        ..run
-    };
+    let ended = Ended::new(run, result)?;
+    let simulated = &ended.result.simulated;
     let writing = Instant::now();
     let mut files = FileSet::in_folder(&folder);
-    keep(&run, &ended, &mut files)?;
+    ended.keep(&mut files)?;
     let (limit, kept) = (time_to_write(request, began), files.count());
     files.limit(&limit);
-    let (plan, uncounted) = plan(&ended.simulated.model, ended.stopped.is_some());
-    let mut summary = summary_of(&run, read, &ended, &plan);
-    let written = write_all(&run, &ended, &mut summary, (&mut files, &limit));
-    if let Err(error) = written {
+    let (plan, uncounted) = plan(&simulated.model, ended.result.stopped.is_some());
+    let mut summary = ended.summary(read, &plan);
+    if let Err(error) = ended.write(&mut summary, &mut files, &limit) {
         let status = limit.reached().ok_or(error)?;
-        summary = summary_of(&run, read, &ended, &plan);
-        let status = ended.stopped.unwrap_or(status);
+        summary = ended.summary(read, &plan);
+        let status = ended.result.stopped.unwrap_or(status);
         leave_out(&mut summary, status, &mut files, kept);
     }
     summary.notes.warn("left_out", uncounted);
     summary.seconds.wrote(began, writing);
     summary.write(files)?;
     unfinished::done(&folder);
-    Ok(command_output(&run, &ended, &folder, &summary))
+    Ok(ended.command_output(&folder, &summary))
 }
 
 /// Refuses an estimate by halved steps of a motion whose steps follow a tolerance.
@@ -107,25 +100,6 @@ struct Run<'a> {
     began: Instant,
     /// Text of the problem of a motion that can be resumed.
     resumable: Option<&'a str>,
-    /// Closed loops with parts of the disturbance, and reasons why some are left out.
-    loops: &'a [DisturbedLoop],
-    left_out: &'a [String],
-}
-
-/// Simulates parts of the disturbance that the problem asks for, and adds their deviations to those of the whole.
-fn disturbed(
-    run: &Run<'_>,
-    ended: &mut SimulationResult,
-) -> Result<(Vec<DisturbedLoop>, Vec<String>), CommandError> {
-    let elapsed = run.began.elapsed().as_secs_f64();
-    let seconds = run.request.max_seconds.map(|limit| limit - elapsed);
-    let found = tasks::disturbed(&run.loaded.disturbed, ended, seconds);
-    let found = found.map_err(CommandError::in_file(&run.request.input))?;
-    ended.stopped = ended.stopped.or(found.stopped);
-    if let Some(closed) = &mut ended.closed_loop {
-        closed.disturbance = found.loops.iter().map(DisturbedLoop::report).collect();
-    }
-    Ok((found.loops, found.left_out))
 }
 
 /// Simulates, from where a motion that has `begun` ends, and keeps the steps in the folder of the results, which is returned, until the motion
@@ -176,251 +150,277 @@ struct Observed {
     blocks: Option<BlockSizes>,
 }
 
-/// Adds the file that a run leaves however it is stopped: the state from which it is resumed, or the motion where it cannot be.
-fn keep(run: &Run<'_>, ended: &SimulationResult, files: &mut FileSet) -> Result<(), WriteError> {
-    let Simulated {
-        model, discrete, ..
-    } = &ended.simulated;
-    let is_motion = discrete.intervals() > 0;
-    resume_file::add(files, discrete, run.resumable.filter(|_| is_motion))?;
-    match is_motion && run.resumable.is_none() {
-        true => solution_file::add(files, model, &solved(model, discrete, None)),
-        false => Ok(()),
-    }
+/// A simulation that has ended.
+struct Ended<'a> {
+    run: Run<'a>,
+    result: SimulationResult,
+    /// Closed loops with parts of the disturbance, and reasons why some are left out.
+    loops: Vec<DisturbedLoop>,
+    left_out: Vec<String>,
 }
 
-/// Observes, assesses and writes a motion until a limit, and completes its summary.
-fn write_all(
-    run: &Run<'_>,
-    ended: &SimulationResult,
-    summary: &mut Summary,
-    (files, limit): (&mut FileSet, &TimeLimit),
-) -> Result<(), WriteError> {
-    let origin = run.request.origin(false);
-    let observed = observe(run, ended, (files, limit), &origin)?;
-    summarise(run, ended, &observed, summary);
-    write_pictures(run, ended, &observed, summary, files, &origin)
-}
-
-/// Observes and assesses a motion, and writes it with its fields at the same time.
-fn observe(
-    run: &Run<'_>,
-    ended: &SimulationResult,
-    (files, limit): (&mut FileSet, &TimeLimit),
-    origin: &Origin,
-) -> Result<Observed, WriteError> {
-    let Simulated {
-        model, discrete, ..
-    } = &ended.simulated;
-    let folder = files.folder().to_owned();
-    // Of many steps each takes long, and most need no other.
-    let (columns, (trajectory, written, assessment)) = join(
-        || observed(model, discrete, &|| limit.reached().is_some()),
-        || {
-            let trajectory = Trajectory::from_discrete(model, discrete);
-            let write = || {
-                if discrete.intervals() > 0 && run.resumable.is_some() {
-                    let kept = solved_of(model, discrete, trajectory.clone(), None);
-                    solution_file::add(files, model, &kept)?;
-                }
-                fields::write(files, model, discrete, origin)
-            };
-            let assess = || {
-                let _watch = stop::watch_by(limit.clone());
-                ended.assess(&run.loaded.system, run.task, &trajectory)
-            };
-            let (written, assessment) = join(write, assess);
-            (trajectory, written, assessment)
-        },
-    );
-    let written = written?;
-    let columns = columns.map_err(|stopped| WriteError::at(folder)(io::Error::other(stopped)))?;
-    let mut observations = trajectory.observe(&model.system);
-    observations.columns.extend(columns);
-    let blocks = BlockSizes::from_model(model);
-    let blocks = blocks.map(|b| b.after(model, &observations, written));
-    observations.columns.extend(assessment.exchange.columns());
-    Ok(Observed {
-        trajectory,
-        observations,
-        assessment,
-        blocks,
-    })
-}
-
-/// The summary of a simulation that is neither observed nor assessed.
-fn summary_of(run: &Run<'_>, read: f64, ended: &SimulationResult, plan: &Plan) -> Summary {
-    let simulated = &ended.simulated;
-    let coordinates = simulated.model.coordinates.name();
-    let mut summary = Summary::new(run.request, ended.word(), coordinates);
-    summary.plan = plan.clone();
-    summary.message = simulated.failure.as_ref().map(ToString::to_string);
-    summary.simulation = Some(simulation_summary(run, ended, None));
-    summary.accuracy.clone_from(&ended.accuracy);
-    summary.seconds = Seconds {
-        total: run.began.elapsed().as_secs_f64(),
-        setup: read + simulated.setup,
-        solver: simulated.seconds,
-        ..Seconds::default()
-    };
-    summary
-}
-
-/// The numbers of a simulation with the sum of its local errors, an estimate of its distance from the exact motion.
-fn simulation_summary(
-    run: &Run<'_>,
-    ended: &SimulationResult,
-    neglected: Option<LocalError>,
-) -> Entries {
-    let Simulated {
-        discrete, error, ..
-    } = &ended.simulated;
-    let (steps, report) = (discrete.intervals(), discrete.report);
-    let neglected = neglected.map(|error| {
-        Entries::default()
-            // Of the point where it is greatest, in m.
-            .with("sum", error.error / 1e3)
-            // Way of the point that goes farthest, in m.
-            .with("path", error.path / 1e3)
-            .with("relative", error.relative())
-            // Order of the method.
-            .with("order", error.order)
-            // True if differences of the motion fall with their order; otherwise the estimate is no more than a warning.
-            .with("is_resolved", error.is_resolved)
-    });
-    Entries::default()
-        .with("steps", steps)
-        .with("duration", discrete.times[steps] / 1e3)
-        .with_some("local_error", neglected)
-        .with("integrator", run.task.solving.integrator.name())
-        .with_some("tolerance", run.task.tolerance)
-        // In the unit of the tolerance; absent of equal steps.
-        .with_some("estimated_error", error.map(|estimated| estimated.error))
-        // True if steps of two other lengths confirm the estimate.
-        .with_some(
-            "is_confirmed",
-            error.map(|estimated| estimated.is_confirmed),
-        )
-        .with("newton_iterations", report.iterations)
-        .with("halved_steps", report.halved)
-        .with("linear_solver", &discrete.solver)
-        .with_some("multigrid", multigrid(report.multigrid, report.fallbacks))
-        .with("factorisations", report.factorisations)
-        // In rows and tangents.
-        .with("assembly_seconds", report.assembly)
-        .with("factorisation_seconds", report.factorisation)
-        .with("solution_seconds", report.solution)
-}
-
-/// Adds what is observed of a simulation to its summary, and the notes on it.
-fn summarise(run: &Run<'_>, ended: &SimulationResult, observed: &Observed, summary: &mut Summary) {
-    let assessment = &observed.assessment;
-    summary.simulation = Some(simulation_summary(run, ended, assessment.neglected));
-    summary.domain.clone_from(&assessment.outside);
-    summary.blocks.clone_from(&observed.blocks);
-    summary.energies = EnergySummary::new(&assessment.exchange);
-    summary.notes.clone_from(&assessment.remarks);
-    summary.closed_loop.clone_from(&ended.closed_loop);
-    summary.notes.note("units", run.loaded.notes.clone());
-    let left_out = run.left_out.iter().cloned();
-    summary.notes.warn("disturbance", left_out);
-}
-
-/// Writes tables, figures and page, next to the solution that the voltages come from, and adds what they show to the summary.
-fn write_pictures(
-    run: &Run<'_>,
-    ended: &SimulationResult,
-    observed: &Observed,
-    summary: &mut Summary,
-    files: &mut FileSet,
-    origin: &Origin,
-) -> Result<(), WriteError> {
-    let Simulated {
-        model, discrete, ..
-    } = &ended.simulated;
-    let Observed {
-        trajectory,
-        observations,
-        assessment,
-        ..
-    } = observed;
-    let (request, task, system) = (run.request, run.task, &run.loaded.system);
-    let path = task.voltages.solution();
-    let earlier = path.and_then(|path| comparison::earlier(model, path));
-    summary.comparison = path
-        .zip(earlier.as_ref())
-        .map(|(path, earlier)| Comparison::new(model, path, trajectory, earlier));
-    let motion = Motion {
-        model,
-        discrete,
-        trajectory,
-        observations,
-    };
-    let shown = DisplayedMotion::from_motion(motion, &run.loaded.output, true, files)?;
-    summary.notes.note("shown", shown.notes.iter().cloned());
-    summary.shown = shown.part;
-    let mut content = summary.page("Simulation", Some(run.loaded));
-    content.rows = rows(summary, task, (model, discrete), assessment.neglected);
-    let earlier = earlier.map(|earlier| shown.beside(earlier));
-    let closed = ended.closed_loop.as_ref();
-    let open = closed.and_then(|closed| closed.open_loop.clone());
-    let open = open.map(|open| shown.beside(open));
-    let tracked = shown.tracked(closed.map_or(&[], |closed| &closed.tracked));
-    let earlier = earlier.as_ref().map(|e| ("the solution", e));
-    let pictures = report::Run {
-        name: match closed {
-            Some(_) => "with feedback",
-            None => "simulation",
-        },
-        comparison: open.as_ref().map(|o| ("without feedback", o)).or(earlier),
-        tracked: &tracked,
-        disturbed: run.loops,
-        held: held(task, ended.reached()),
-        figures: request.figures,
-        page: request.page.of(&content),
-        ..shown.run(system, origin)
-    };
-    write_run(files, &pictures)
-}
-
-/// The answer of the command.
-fn command_output(
-    run: &Run<'_>,
-    ended: &SimulationResult,
-    folder: &Path,
-    summary: &Summary,
-) -> CommandOutput {
-    let mut notes: Vec<String> = summary.message.iter().cloned().collect();
-    notes.extend(summary.comparison.iter().flat_map(Comparison::notes));
-    notes.extend(summary.notes.lines());
-    if STOPPED.contains(&&*summary.status) && run.resumable.is_some() {
-        notes.extend(resume_file::command(run.request, &run.loaded.task));
-    }
-    let mut is_solved = summary.status == "simulated";
-    let mut word = match is_solved {
-        true => "simulated".to_owned(),
-        false => {
-            let status = summary.status.replace('_', " ");
-            match ended.word() {
-                "simulated" => format!("simulated, not all written ({status})"),
-                _ => format!("not simulated to the end ({status})"),
-            }
+impl<'a> Ended<'a> {
+    /// Simulates parts of the disturbance that the problem asks for, and adds their deviations to those of the whole.
+    fn new(run: Run<'a>, mut result: SimulationResult) -> Result<Self, CommandError> {
+        let elapsed = run.began.elapsed().as_secs_f64();
+        let seconds = run.request.max_seconds.map(|limit| limit - elapsed);
+        let found = tasks::disturbed(&run.loaded.disturbed, &result, seconds);
+        let found = found.map_err(CommandError::in_file(&run.request.input))?;
+        result.stopped = result.stopped.or(found.stopped);
+        if let Some(closed) = &mut result.closed_loop {
+            closed.disturbance = found.loops.iter().map(DisturbedLoop::report).collect();
         }
-    };
-    if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
-        notes.extend(accuracy.notes());
-        (word, is_solved) = accuracy.outcome(&word);
+        Ok(Self {
+            run,
+            result,
+            loops: found.loops,
+            left_out: found.left_out,
+        })
     }
-    CommandOutput {
-        is_solved,
-        result: format!(
-            "{word}: {}, {} s of motion, {:.2} s, {}",
-            counted(ended.simulated.discrete.intervals(), "step"),
-            shortest(ended.reached() / 1e3, 9),
-            summary.seconds.total,
-            folder.display()
-        ),
-        notes,
+
+    /// Adds the file that a run leaves however it is stopped: the state from which it is resumed, or the motion where it cannot be.
+    fn keep(&self, files: &mut FileSet) -> Result<(), WriteError> {
+        let Simulated {
+            model, discrete, ..
+        } = &self.result.simulated;
+        let is_motion = discrete.intervals() > 0;
+        resume_file::add(files, discrete, self.run.resumable.filter(|_| is_motion))?;
+        match is_motion && self.run.resumable.is_none() {
+            true => solution_file::add(files, model, &solved(model, discrete, None)),
+            false => Ok(()),
+        }
+    }
+
+    /// Observes, assesses and writes a motion until a limit, and completes its summary.
+    fn write(
+        &self,
+        summary: &mut Summary,
+        files: &mut FileSet,
+        limit: &TimeLimit,
+    ) -> Result<(), WriteError> {
+        let origin = self.run.request.origin(false);
+        let observed = self.observe(files, limit, &origin)?;
+        self.summarise(&observed, summary);
+        self.write_pictures(&observed, summary, files, &origin)
+    }
+
+    /// Observes and assesses a motion, and writes it with its fields at the same time.
+    fn observe(
+        &self,
+        files: &mut FileSet,
+        limit: &TimeLimit,
+        origin: &Origin,
+    ) -> Result<Observed, WriteError> {
+        let Self { run, result, .. } = self;
+        let Simulated {
+            model, discrete, ..
+        } = &result.simulated;
+        let folder = files.folder().to_owned();
+        // Of many steps each takes long, and most need no other.
+        let (columns, (trajectory, written, assessment)) = join(
+            || observed(model, discrete, &|| limit.reached().is_some()),
+            || {
+                let trajectory = Trajectory::from_discrete(model, discrete);
+                let write = || {
+                    if discrete.intervals() > 0 && run.resumable.is_some() {
+                        let kept = solved_of(model, discrete, trajectory.clone(), None);
+                        solution_file::add(files, model, &kept)?;
+                    }
+                    fields::write(files, model, discrete, origin)
+                };
+                let assess = || {
+                    let _watch = stop::watch_by(limit.clone());
+                    result.assess(&run.loaded.system, run.task, &trajectory)
+                };
+                let (written, assessment) = join(write, assess);
+                (trajectory, written, assessment)
+            },
+        );
+        let written = written?;
+        let columns =
+            columns.map_err(|stopped| WriteError::at(folder)(io::Error::other(stopped)))?;
+        let mut observations = trajectory.observe(&model.system);
+        observations.columns.extend(columns);
+        let blocks = BlockSizes::from_model(model);
+        let blocks = blocks.map(|b| b.after(model, &observations, written));
+        observations.columns.extend(assessment.exchange.columns());
+        Ok(Observed {
+            trajectory,
+            observations,
+            assessment,
+            blocks,
+        })
+    }
+
+    /// The summary before the motion is observed and assessed.
+    fn summary(&self, read: f64, plan: &Plan) -> Summary {
+        let Self { run, result, .. } = self;
+        let simulated = &result.simulated;
+        let coordinates = simulated.model.coordinates.name();
+        let mut summary = Summary::new(run.request, result.word(), coordinates);
+        summary.plan = plan.clone();
+        summary.message = simulated.failure.as_ref().map(ToString::to_string);
+        summary.simulation = Some(self.entries(None));
+        summary.accuracy.clone_from(&result.accuracy);
+        summary.seconds = Seconds {
+            total: run.began.elapsed().as_secs_f64(),
+            setup: read + simulated.setup,
+            solver: simulated.seconds,
+            ..Seconds::default()
+        };
+        summary
+    }
+
+    /// The numbers of the simulation with the sum of its local errors, an estimate of its distance from the exact motion.
+    fn entries(&self, neglected: Option<LocalError>) -> Entries {
+        let Simulated {
+            discrete, error, ..
+        } = &self.result.simulated;
+        let (steps, report) = (discrete.intervals(), discrete.report);
+        let neglected = neglected.map(|error| {
+            Entries::default()
+                // Of the point where it is greatest, in m.
+                .with("sum", error.error / 1e3)
+                // Way of the point that goes farthest, in m.
+                .with("path", error.path / 1e3)
+                .with("relative", error.relative())
+                // Order of the method.
+                .with("order", error.order)
+                // True if differences of the motion fall with their order; otherwise the estimate is no more than a warning.
+                .with("is_resolved", error.is_resolved)
+        });
+        Entries::default()
+            .with("steps", steps)
+            .with("duration", discrete.times[steps] / 1e3)
+            .with_some("local_error", neglected)
+            .with("integrator", self.run.task.solving.integrator.name())
+            .with_some("tolerance", self.run.task.tolerance)
+            // In the unit of the tolerance; absent of equal steps.
+            .with_some("estimated_error", error.map(|estimated| estimated.error))
+            // True if steps of two other lengths confirm the estimate.
+            .with_some(
+                "is_confirmed",
+                error.map(|estimated| estimated.is_confirmed),
+            )
+            .with("newton_iterations", report.iterations)
+            .with("halved_steps", report.halved)
+            .with("linear_solver", &discrete.solver)
+            .with_some("multigrid", multigrid(report.multigrid, report.fallbacks))
+            .with("factorisations", report.factorisations)
+            // In rows and tangents.
+            .with("assembly_seconds", report.assembly)
+            .with("factorisation_seconds", report.factorisation)
+            .with("solution_seconds", report.solution)
+    }
+
+    /// Adds what is observed to the summary, and the notes on it.
+    fn summarise(&self, observed: &Observed, summary: &mut Summary) {
+        let assessment = &observed.assessment;
+        summary.simulation = Some(self.entries(assessment.neglected));
+        summary.domain.clone_from(&assessment.outside);
+        summary.blocks.clone_from(&observed.blocks);
+        summary.energies = EnergySummary::new(&assessment.exchange);
+        summary.notes.clone_from(&assessment.remarks);
+        summary.closed_loop.clone_from(&self.result.closed_loop);
+        summary.notes.note("units", self.run.loaded.notes.clone());
+        let left_out = self.left_out.iter().cloned();
+        summary.notes.warn("disturbance", left_out);
+    }
+
+    /// Writes tables, figures and page, next to the solution that the voltages come from, and adds what they show to the summary.
+    fn write_pictures(
+        &self,
+        observed: &Observed,
+        summary: &mut Summary,
+        files: &mut FileSet,
+        origin: &Origin,
+    ) -> Result<(), WriteError> {
+        let Simulated {
+            model, discrete, ..
+        } = &self.result.simulated;
+        let Observed {
+            trajectory,
+            observations,
+            assessment,
+            ..
+        } = observed;
+        let (run, result) = (&self.run, &self.result);
+        let (request, task, system) = (run.request, run.task, &run.loaded.system);
+        let path = task.voltages.solution();
+        let earlier = path.and_then(|path| comparison::earlier(model, path));
+        summary.comparison = path
+            .zip(earlier.as_ref())
+            .map(|(path, earlier)| Comparison::new(model, path, trajectory, earlier));
+        let motion = Motion {
+            model,
+            discrete,
+            trajectory,
+            observations,
+        };
+        let shown = DisplayedMotion::from_motion(motion, &run.loaded.output, true, files)?;
+        summary.notes.note("shown", shown.notes.iter().cloned());
+        summary.shown = shown.part;
+        let mut content = summary.page("Simulation", Some(run.loaded));
+        content.rows = rows(summary, task, model, discrete, assessment.neglected);
+        let earlier = earlier.map(|earlier| shown.beside(earlier));
+        let closed = result.closed_loop.as_ref();
+        let open = closed.and_then(|closed| closed.open_loop.clone());
+        let open = open.map(|open| shown.beside(open));
+        let tracked = shown.tracked(closed.map_or(&[], |closed| &closed.tracked));
+        let earlier = earlier.as_ref().map(|e| ("the solution", e));
+        let pictures = report::Run {
+            name: match closed {
+                Some(_) => "with feedback",
+                None => "simulation",
+            },
+            comparison: open.as_ref().map(|o| ("without feedback", o)).or(earlier),
+            tracked: &tracked,
+            disturbed: &self.loops,
+            held: held(task, result.reached()),
+            figures: request.figures,
+            page: request.page.of(&content),
+            ..shown.run(system, origin)
+        };
+        write_run(files, &pictures)
+    }
+
+    /// The answer of the command.
+    fn command_output(&self, folder: &Path, summary: &Summary) -> CommandOutput {
+        let mut notes: Vec<String> = summary.message.iter().cloned().collect();
+        notes.extend(summary.comparison.iter().flat_map(Comparison::notes));
+        notes.extend(summary.notes.lines());
+        if STOPPED.contains(&&*summary.status) && self.run.resumable.is_some() {
+            notes.extend(resume_file::command(
+                self.run.request,
+                &self.run.loaded.task,
+            ));
+        }
+        let mut is_solved = summary.status == "simulated";
+        let mut word = match is_solved {
+            true => "simulated".to_owned(),
+            false => {
+                let status = summary.status.replace('_', " ");
+                match self.result.word() {
+                    "simulated" => format!("simulated, not all written ({status})"),
+                    _ => format!("not simulated to the end ({status})"),
+                }
+            }
+        };
+        if let (true, Some(accuracy)) = (is_solved, &summary.accuracy) {
+            notes.extend(accuracy.notes());
+            (word, is_solved) = accuracy.outcome(&word);
+        }
+        CommandOutput {
+            is_solved,
+            result: format!(
+                "{word}: {}, {} s of motion, {:.2} s, {}",
+                counted(self.result.simulated.discrete.intervals(), "step"),
+                shortest(self.result.reached() / 1e3, 9),
+                summary.seconds.total,
+                folder.display()
+            ),
+            notes,
+        }
     }
 }
 
@@ -428,7 +428,8 @@ fn command_output(
 pub(super) fn rows(
     summary: &Summary,
     task: &Simulation,
-    (model, discrete): (&Model, &DiscreteTrajectory),
+    model: &Model,
+    discrete: &DiscreteTrajectory,
     neglected: Option<LocalError>,
 ) -> Vec<(String, String)> {
     let reached = discrete.times[discrete.intervals()];
