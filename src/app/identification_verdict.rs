@@ -126,40 +126,33 @@ fn beyond(recording: &Recording) -> Option<String> {
 
 /// That the grid biases the constants, or how little it does.
 fn of_grid(found: &Identified, remarks: &mut Remarks) {
-    let largest = found.bias.largest();
-    match found.bias.is_confirmed {
-        true if !found.bias.is_small() => remarks.note(
-            "grid",
-            [format!(
-                "the last halving of the steps changes no constant by more than {NONE:.0e} of its value; that is {} standard errors, as the readings have hardly any scatter",
-                significant(largest, 2)
-            )],
+    let bias = &found.bias;
+    let errors = || significant(bias.largest(), 2);
+    let last = "the last halving of the steps changes";
+    let text = match bias.is_confirmed {
+        true if !bias.is_small() => format!(
+            "{last} no constant by more than {NONE:.0e} of its value; that is {} standard errors, as the readings have hardly any scatter",
+            errors()
         ),
-        true => remarks.note(
-            "grid",
-            [format!(
-                "the last halving of the steps changes no constant by more than {} standard errors",
-                significant(largest, 2)
-            )],
+        true => format!(
+            "{last} no constant by more than {} standard errors",
+            errors()
         ),
-        false if largest.is_infinite() => remarks.warn(
-            "bias_not_confirmed",
-            ["no fit on a finer grid tells how far the grid biases the result".to_owned()],
+        false if bias.largest().is_infinite() => {
+            "no fit on a finer grid tells how far the grid biases the result".to_owned()
+        }
+        false if bias.is_small() => format!(
+            "{last} a standard error by {} %: the intervals are not confirmed",
+            significant(100.0 * bias.errors, 2)
         ),
-        false if found.bias.is_small() => remarks.warn(
-            "bias_not_confirmed",
-            [format!(
-                "the last halving of the steps changes a standard error by {} %: the intervals are not confirmed",
-                significant(100.0 * found.bias.errors, 2)
-            )],
+        false => format!(
+            "{last} a constant by {} standard errors: the grid biases the result",
+            errors()
         ),
-        false => remarks.warn(
-            "bias_not_confirmed",
-            [format!(
-                "the last halving of the steps changes a constant by {} standard errors: the grid biases the result",
-                significant(largest, 2)
-            )],
-        ),
+    };
+    match bias.is_confirmed {
+        true => remarks.note("grid", [text]),
+        false => remarks.warn("bias_not_confirmed", [text]),
     }
 }
 

@@ -13,7 +13,7 @@ use crate::mesh::triangulated::Surface;
 use crate::model::system::{Body, Shape};
 use crate::model::{Loops, Model, Role, System};
 use crate::nlp::{Entries, Nlp};
-use crate::report::canvas::{Align, Stroke};
+use crate::report::canvas::{Align, Stroke, rectangle};
 use crate::report::origin::Origin;
 use crate::report::{atomic, canvas, style, table};
 use crate::sparse::Symmetry;
@@ -383,20 +383,12 @@ fn sparsity_svg(name: &str, shape: [usize; 2], entries: &Entries, origin: &Origi
     cells.dedup();
     let sheet = size.map(|side| side + 2.0 * MARGIN);
     canvas::svg(sheet, origin, |canvas| {
-        let corner = |row: f64, col: f64| [MARGIN + col * cell, MARGIN + row * cell];
+        let corner = |row: usize, col: usize| [col, row].map(|k| MARGIN + k as f64 * cell);
         for (row, col) in cells {
-            let (row, col) = (row as f64, col as f64);
-            let square = [
-                corner(row, col),
-                corner(row, col + 1.0),
-                corner(row + 1.0, col + 1.0),
-                corner(row + 1.0, col),
-            ];
+            let square = rectangle(corner(row, col), corner(row + 1, col + 1));
             canvas.fill(&square, style::hue(0), 1.0);
         }
-        let [width, height] = size;
-        let frame = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
-        let frame = frame.map(|p| p.map(|x| x + MARGIN));
+        let frame = rectangle([MARGIN; 2], size.map(|side| side + MARGIN));
         canvas.outline(&frame, Stroke::solid(style::INK, 0.8));
         let title = format!("{name}: {rows} × {columns}, {} entries", entries.rows.len());
         let place = [MARGIN, 0.5 * MARGIN];

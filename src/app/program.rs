@@ -170,33 +170,27 @@ impl FileHorizon {
 
     /// Names of all that is measured, the state or the readings of its observer, with their units: rad, m, rad/s, m/s.
     pub fn measured(&self) -> Vec<(String, &'static str)> {
+        let all = self.readings().into_iter();
+        all.map(|(name, (unit, _))| (name, unit)).collect()
+    }
+
+    /// The same with the factors of units from those inside.
+    fn readings(&self) -> Vec<(String, (&'static str, f64))> {
         let law = self.horizon.law();
-        let of_state = |one: &Measured| {
-            let unit = unit_of(one).0;
-            match one.is_rate {
-                true => (format!("rate of {}", one.name), unit),
-                false => (one.name.clone(), unit),
-            }
+        let of_state = |one: &Measured| match one.is_rate {
+            true => (format!("rate of {}", one.name), unit_of(one)),
+            false => (one.name.clone(), unit_of(one)),
         };
         let reading = |one: &Reading| match one {
             Reading::State(place) => of_state(&law.measured[*place]),
-            Reading::Marker(name, axis) => (format!("{name}.{}", ["x", "y", "z"][*axis]), "m"),
+            Reading::Marker(name, axis) => {
+                let factor = factor_of(one, &law.measured);
+                (format!("{name}.{}", ["x", "y", "z"][*axis]), ("m", factor))
+            }
         };
         match &law.observer {
             Some(observer) => observer.readings.iter().map(reading).collect(),
             None => law.measured.iter().map(of_state).collect(),
-        }
-    }
-
-    /// Factors of all that is measured from the units inside.
-    fn factors(&self) -> Vec<f64> {
-        let law = self.horizon.law();
-        match &law.observer {
-            Some(observer) => {
-                let all = observer.readings.iter();
-                all.map(|one| factor_of(one, &law.measured)).collect()
-            }
-            None => law.measured.iter().map(|one| unit_of(one).1).collect(),
         }
     }
 
@@ -243,7 +237,8 @@ pub struct SiController<'h> {
 impl<'h> SiController<'h> {
     /// A controller at the start of the motion.
     pub fn new(of: &'h FileHorizon) -> Self {
-        let measured: Vec<f64> = of.factors().iter().map(|factor| 1.0 / factor).collect();
+        let readings = of.readings().into_iter();
+        let measured: Vec<f64> = readings.map(|(_, (_, factor))| 1.0 / factor).collect();
         let inputs: Vec<f64> = of.units().map(|(_, factor)| factor).collect();
         Self {
             controller: RecedingHorizon::new(&of.horizon),

@@ -89,11 +89,8 @@ pub fn svg(size: [f64; 2], origin: &Origin, draw: impl FnOnce(&Canvas<'_>)) -> S
     {
         let area = SVGBackend::with_string(&mut text, sheet).into_drawing_area();
         let canvas = Canvas { area, size };
-        canvas.fill(
-            &[[0.0, 0.0], [size[0], 0.0], [size[0], height], [0.0, height]],
-            style::PAPER,
-            1.0,
-        );
+        let paper = rectangle([0.0, 0.0], [size[0], height]);
+        canvas.fill(&paper, style::PAPER, 1.0);
         draw(&canvas);
         for (i, line) in lines.iter().enumerate() {
             canvas.coloured_text(
@@ -200,6 +197,11 @@ impl Canvas<'_> {
             .draw_text(text, &style, pixel(&place))
             .expect(IN_MEMORY);
     }
+}
+
+/// Corners of a rectangle between two opposite ones.
+pub fn rectangle(from: CanvasPoint, to: CanvasPoint) -> [CanvasPoint; 4] {
+    [from, [to[0], from[1]], to, [from[0], to[1]]]
 }
 
 /// Width in pt that a text of the given size takes, on the generous side.

@@ -1,7 +1,7 @@
 //! Legend next to a drawing in space: names of the drawn parts, axes, a scale.
 
 use crate::report::axes::{Axis, Extent};
-use crate::report::canvas::{Align, Canvas, CanvasPoint, Stroke, text_width};
+use crate::report::canvas::{Align, Canvas, CanvasPoint, Stroke, rectangle, text_width};
 use crate::report::style;
 use crate::report::style::Colour;
 use crate::report::view::View;
@@ -36,8 +36,7 @@ pub fn draw(canvas: &Canvas<'_>, [left, top]: CanvasPoint, rows: &[(String, Lege
         let at = top + ROW * i as f64;
         match *sample {
             LegendSymbol::Swatch(colour) => {
-                let corners = [[0.0, -4.0], [14.0, -4.0], [14.0, 4.0], [0.0, 4.0]];
-                let corners = corners.map(|c| [left + c[0], at + c[1]]);
+                let corners = rectangle([left, at - 4.0], [left + 14.0, at + 4.0]);
                 canvas.fill(&corners, colour.mix(style::PAPER, 0.55), 1.0);
                 canvas.outline(&corners, Stroke::solid(colour, 0.8));
             }
@@ -97,20 +96,10 @@ pub fn colour_bar(canvas: &Canvas<'_>, [left, top]: CanvasPoint, scale: f64) {
         let high = (i + 1) as f64 / STEPS as f64;
         // Each step reaches under the next one, so that no seam shows.
         let upper = at((high + 1.0 / STEPS as f64).min(1.0));
-        let corners = [
-            [left, at(low)],
-            [left + width, at(low)],
-            [left + width, upper],
-            [left, upper],
-        ];
+        let corners = rectangle([left, at(low)], [left + width, upper]);
         canvas.fill(&corners, style::voltage((low + high) / 2.0), 1.0);
     }
-    let frame = [
-        [left, at(0.0)],
-        [left + width, at(0.0)],
-        [left + width, at(1.0)],
-        [left, at(1.0)],
-    ];
+    let frame = rectangle([left, at(0.0)], [left + width, at(1.0)]);
     canvas.outline(&frame, Stroke::solid(style::INK, 0.6));
     let axis = Axis::linear("", Extent::Tight);
     for (value, label) in axis.ticks([0.0, scale / 1e3], 5.0).major {

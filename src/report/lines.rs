@@ -1,7 +1,7 @@
 //! Curves over a pair of axes: the plot that the other figures share.
 
 use crate::report::axes::{Axis, Extent, Scale};
-use crate::report::canvas::{self, Align, Canvas, CanvasPoint, Stroke, text_width};
+use crate::report::canvas::{self, Align, Canvas, CanvasPoint, Stroke, rectangle, text_width};
 use crate::report::origin::Origin;
 use crate::report::style::{self, Colour, Dash};
 
@@ -312,10 +312,9 @@ impl PlotFrame<'_, '_> {
 
     fn border(&self) {
         let [left, top] = self.corner;
-        let (right, bottom) = (left + self.size[0], top + self.size[1]);
-        let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];
-        self.canvas
-            .outline(&corners, Stroke::solid(style::INK, 0.8));
+        let corners = rectangle(self.corner, [left + self.size[0], top + self.size[1]]);
+        let ink = Stroke::solid(style::INK, 0.8);
+        self.canvas.outline(&corners, ink);
     }
 }
 

@@ -4,7 +4,7 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::model::System;
 use crate::model::system::InputKind;
 use crate::report::axes::{Axis, Extent};
-use crate::report::canvas::{self, Align, Canvas, Stroke, text_width};
+use crate::report::canvas::{self, Align, Canvas, Stroke, rectangle, text_width};
 use crate::report::lines::{LinePlot, Series};
 use crate::report::origin::Origin;
 use crate::report::style::{self, Dash};
@@ -137,17 +137,12 @@ fn draw(canvas: &Canvas<'_>, bars: &[Bar<'_>], left: f64, height: f64) {
         for (sign, colour, _) in sides {
             let [a, b] = [at(0.0), at(sign * bar.change)];
             let (up, down) = (middle - BAR / 2.0, middle + BAR / 2.0);
-            canvas.fill(&[[a, up], [b, up], [b, down], [a, down]], colour, 0.85);
+            canvas.fill(&rectangle([a, up], [b, down]), colour, 0.85);
         }
         let place = [left - 8.0, middle];
         canvas.text(place, bar.name, style::TICK_SIZE, Align::Right);
     }
-    let corners = [
-        [left, top],
-        [left + FRAME, top],
-        [left + FRAME, bottom],
-        [left, bottom],
-    ];
+    let corners = rectangle([left, top], [left + FRAME, bottom]);
     canvas.outline(&corners, Stroke::solid(style::INK, 0.8));
     canvas.line(
         &[[at(0.0), top], [at(0.0), bottom]],
@@ -157,7 +152,7 @@ fn draw(canvas: &Canvas<'_>, bars: &[Bar<'_>], left: f64, height: f64) {
     canvas.text(middle, &axis.label, style::LABEL_SIZE, Align::Centre);
     let mut x = left;
     for (_, colour, words) in sides {
-        let square = [[x, 10.0], [x + 10.0, 10.0], [x + 10.0, 20.0], [x, 20.0]];
+        let square = rectangle([x, 10.0], [x + 10.0, 20.0]);
         canvas.fill(&square, colour, 0.85);
         canvas.text([x + 15.0, 15.0], words, style::TICK_SIZE, Align::Left);
         x += 30.0 + text_width(words, style::TICK_SIZE);
