@@ -2,86 +2,59 @@
 
 use crate::dynamics::EnergyExchange;
 use crate::dynamics::trajectory::Observations;
+use crate::files::Entries;
 use crate::kinematics::Carrier;
 use crate::math::significant;
 use crate::model::{Model, Role, SolidBlock};
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A block, or a muscle of finite elements.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
-pub struct BlockSize {
-    /// Nodes of the mesh.
-    pub nodes: usize,
-    /// Elements.
-    pub elements: usize,
+/// Sizes of a block, or of a muscle of finite elements.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct BlockSize {
+    pub(super) nodes: usize,
+    pub(super) elements: usize,
     /// Coordinates of an instant.
-    pub unknowns: usize,
+    unknowns: usize,
     /// Potentials of an interval.
-    pub potentials: usize,
+    potentials: usize,
 }
 
-/// All blocks of a scene.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct BlockSizes {
-    /// By name.
-    pub blocks: BTreeMap<String, BlockSize>,
-    /// Nodes of all blocks.
-    pub nodes: usize,
-    /// Elements of all blocks.
-    pub elements: usize,
-    /// Coordinates of an instant of all blocks.
-    pub unknowns: usize,
-    /// Potentials of an interval.
-    pub potentials: usize,
-    /// Charge in C at the end by `block.electrode` or by muscle.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-    pub charges: BTreeMap<String, f64>,
-    /// Instants whose fields were written.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub instants_written: Option<usize>,
+/// Sizes of all blocks of a model by name.
+pub(super) fn sizes(model: &Model) -> BTreeMap<&str, BlockSize> {
+    let blocks = model.solids.iter();
+    let size = |block| BlockSize::from_block(model, block);
+    blocks
+        .map(|block| (block.solid.name.as_str(), size(block)))
+        .collect()
 }
 
-impl BlockSizes {
-    /// Those of a model; `None` where nothing is elastic.
-    pub fn from_model(model: &Model) -> Option<Self> {
-        if model.solids.is_empty() {
-            return None;
-        }
-        let named = model.solids.iter();
-        let blocks: BTreeMap<_, _> = named
-            .map(|c| (c.solid.name.clone(), BlockSize::from_block(model, c)))
-            .collect();
-        let sum = |part: fn(&BlockSize) -> usize| blocks.values().map(part).sum();
-        Some(Self {
-            nodes: sum(|b| b.nodes),
-            elements: sum(|b| b.elements),
-            unknowns: sum(|b| b.unknowns),
-            potentials: model.variables.count(Role::Potential),
-            blocks,
-            ..Self::default()
-        })
-    }
-
-    /// The same with the charges at the last instant observed and the number of instants written.
-    pub(super) fn after(self, model: &Model, observed: &Observations, written: usize) -> Self {
-        let immobile = model
-            .solids
-            .iter()
-            .flat_map(SolidBlock::immobile_electrodes);
-        let immobile = immobile.map(|(block, electrode)| format!("{block}.{electrode}"));
-        let voltages = model.variables.with(Role::Voltage).iter();
-        let sources = voltages.map(|voltage| voltage.name.clone());
-        // Charges are observed in this order, in mC.
-        let columns = observed.columns.iter();
-        let charges = columns.filter(|column| column.name.ends_with("_charge"));
-        let last = charges.filter_map(|column| column.values.last());
-        Self {
-            charges: immobile.chain(sources).zip(last.map(|q| q / 1e3)).collect(),
-            instants_written: Some(written),
-            ..self
-        }
-    }
+/// Blocks of a model in `summary.json`, with the charges in C at the last instant observed by `block.electrode` or by muscle, and the number of instants
+/// whose fields were written; none where nothing is elastic.
+pub(super) fn entries(model: &Model, observed: &Observations, written: usize) -> Option<Entries> {
+    let blocks = sizes(model);
+    let sum = |part: fn(&BlockSize) -> usize| blocks.values().map(part).sum::<usize>();
+    let solids = model.solids.iter();
+    let immobile = solids.flat_map(SolidBlock::immobile_electrodes);
+    let immobile = immobile.map(|(block, electrode)| format!("{block}.{electrode}"));
+    let voltages = model.variables.with(Role::Voltage).iter();
+    let sources = voltages.map(|voltage| voltage.name.clone());
+    // Charges are observed in this order, in mC.
+    let columns = observed.columns.iter();
+    let charges = columns.filter(|column| column.name.ends_with("_charge"));
+    let last = charges.filter_map(|column| column.values.last());
+    let charges = immobile.chain(sources).zip(last.map(|q| q / 1e3));
+    let charges: BTreeMap<String, f64> = charges.collect();
+    (!blocks.is_empty()).then(|| {
+        Entries::default()
+            .with("blocks", &blocks)
+            .with("nodes", sum(|block| block.nodes))
+            .with("elements", sum(|block| block.elements))
+            .with("unknowns", sum(|block| block.unknowns))
+            .with("potentials", model.variables.count(Role::Potential))
+            .with_some("charges", Some(&charges).filter(|all| !all.is_empty()))
+            .with("instants_written", written)
+    })
 }
 
 impl BlockSize {

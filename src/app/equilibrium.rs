@@ -3,7 +3,6 @@
 use std::path::Path;
 use std::time::Instant;
 
-use crate::app::blocks::BlockSizes;
 use crate::app::equilibrium_summary::{Rest, at_rest, status};
 use crate::app::error::CommandError;
 use crate::app::kept::overwrite_check::{make_folder_of, refuse_foreign};
@@ -11,7 +10,7 @@ use crate::app::no_equilibrium::{no_equilibrium, refused};
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::summary::{MEASURED, Seconds, Summary};
-use crate::app::{fields, path};
+use crate::app::{blocks, fields, path};
 use crate::control::problem::{AtRest, Task};
 use crate::dynamics::{UNSTABLE, observations};
 use crate::files::{Loaded, driven_voltages, read_problem, read_system};
@@ -112,7 +111,7 @@ pub(super) fn at(
     summary.domain.clone_from(&result.outside);
     summary.notes.clone_from(&result.remarks);
     summary.plan = Plan::from_model(model, None, MEASURED);
-    summary.blocks = BlockSizes::from_model(model).map(|b| b.after(model, &observed, written));
+    summary.blocks = blocks::entries(model, &observed, written);
     summary.seconds = Seconds {
         total: began.elapsed().as_secs_f64(),
         setup: read + result.setup,

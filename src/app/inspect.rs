@@ -1,6 +1,6 @@
 //! Inspection of a problem before it is solved: its terms, unknowns, equations and nonzeros.
 
-use crate::app::blocks::BlockSizes;
+use crate::app::blocks;
 use crate::app::error::CommandError;
 use crate::app::kept::overwrite_check::make_folder;
 use crate::app::program::joined;
@@ -128,11 +128,15 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
     if !system.solids.is_empty() {
         sizes.insert(3, ("elastic blocks", system.solids.len()));
     }
-    if let Some(blocks) = BlockSizes::from_model(model) {
+    let blocks = blocks::sizes(model);
+    if !blocks.is_empty() {
         sizes.extend([
-            ("potentials of an interval", blocks.potentials),
-            ("nodes", blocks.nodes),
-            ("elements", blocks.elements),
+            ("potentials of an interval", count(Role::Potential)),
+            ("nodes", blocks.values().map(|block| block.nodes).sum()),
+            (
+                "elements",
+                blocks.values().map(|block| block.elements).sum(),
+            ),
         ]);
     }
     let tangent = match (model.analysis.of_motion, control) {

@@ -43,7 +43,6 @@ mod templates;
 
 pub(crate) use batch::{Batch, RunEnd, Said, check_run_in, run_all, task_runs_at_once};
 pub use batch::{RunIn, end_with_parent};
-pub use blocks::{BlockSize, BlockSizes};
 pub use equilibrium::equilibrium_of_file;
 pub use error::CommandError;
 pub use inspect::{Inspected, inspect, inspected};

@@ -1,6 +1,6 @@
 //! A simulation from file to folder.
 
-use crate::app::blocks::{BlockSizes, EnergySummary};
+use crate::app::blocks::{self, EnergySummary};
 use crate::app::comparison::Comparison;
 use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::error::CommandError;
@@ -147,7 +147,7 @@ struct Observed {
     trajectory: Trajectory,
     observations: Observations,
     assessment: Assessment,
-    blocks: Option<BlockSizes>,
+    blocks: Option<Entries>,
 }
 
 /// A simulation that has ended.
@@ -241,8 +241,7 @@ impl<'a> Ended<'a> {
             columns.map_err(|stopped| WriteError::at(folder)(io::Error::other(stopped)))?;
         let mut observations = trajectory.observe(&model.system);
         observations.columns.extend(columns);
-        let blocks = BlockSizes::from_model(model);
-        let blocks = blocks.map(|b| b.after(model, &observations, written));
+        let blocks = blocks::entries(model, &observations, written);
         observations.columns.extend(assessment.exchange.columns());
         Ok(Observed {
             trajectory,

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::time::Instant;
 
-use crate::app::blocks::{BlockSizes, EnergySummary};
+use crate::app::blocks::{self, EnergySummary};
 use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::error::CommandError;
 use crate::app::kept::partial_result::{leave_out, time_to_write};
@@ -153,7 +153,7 @@ impl Solved<'_> {
             &origin,
         )?;
         let written = fields::write(files, model, discrete, &origin)?;
-        summary.blocks = BlockSizes::from_model(model).map(|b| b.after(model, &observed, written));
+        summary.blocks = blocks::entries(model, &observed, written);
         observed.columns.extend(result.exchange.columns());
         write_sensitivities(result, files, &origin)?;
         let motion = Motion {

@@ -1,6 +1,6 @@
 //! `summary.json`: the problem, its status, its size and its times.
 
-use crate::app::blocks::{BlockSizes, EnergySummary};
+use crate::app::blocks::EnergySummary;
 use crate::app::comparison::Comparison;
 use crate::app::displayed_motion::ShownPart;
 use crate::app::error::CommandError;
@@ -80,7 +80,7 @@ pub(super) struct Summary {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) domain: Vec<Outside>,
     #[serde(flatten)]
-    pub(super) blocks: Option<BlockSizes>,
+    pub(super) blocks: Option<Entries>,
     /// Those of the model; absent where there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) coordinates: Option<&'static str>,
