@@ -57,28 +57,25 @@ pub(crate) struct Progress {
 impl Progress {
     /// A solve with an open number of iterations, or a run of which only the phase is known yet.
     pub(super) fn of_solve(shown: ProgressDisplay) -> Self {
-        let bar = target(ProgressBar::no_length(), shown);
-        Self::starting(bar, "{spinner} {elapsed_precise} {msg}")
+        let template = "{spinner} {elapsed_precise} {msg}";
+        Self::starting(progress_bar(shown, None, template))
     }
 
     /// A simulation of `steps` steps.
     pub(super) fn of_steps(shown: ProgressDisplay, steps: usize) -> Self {
-        let bar = target(ProgressBar::new(steps as u64), shown);
-        Self::starting(bar, "{elapsed_precise} {bar:20} step {pos} of {len} {msg}")
+        let template = "{elapsed_precise} {bar:20} step {pos} of {len} {msg}";
+        Self::starting(progress_bar(shown, Some(steps), template))
     }
 
     /// Several runs, each of which is called `what`.
     pub(crate) fn of_runs(shown: ProgressDisplay, what: &str, count: usize) -> Self {
-        let bar = target(ProgressBar::new(count as u64), shown);
-        Self::starting(
-            bar,
-            &format!("{{elapsed_precise}} {{wide_bar}} {what} {{pos}} of {{len}} {{msg}}"),
-        )
+        let template =
+            format!("{{elapsed_precise}} {{wide_bar}} {what} {{pos}} of {{len}} {{msg}}");
+        Self::starting(progress_bar(shown, Some(count), &template))
     }
 
-    /// Shows a bar by a template of indicatif, in the place of the one before.
-    fn starting(bar: ProgressBar, template: &str) -> Self {
-        bar.set_style(style(template));
+    /// Shows a bar in the place of the one before.
+    fn starting(bar: ProgressBar) -> Self {
         let ticker = match bar.is_hidden() {
             true => None,
             false => Ticker::for_bar(&bar),
@@ -152,11 +149,21 @@ fn rough(seconds: f64) -> String {
     }
 }
 
-/// A bar of another command: `length` steps, shown by a template of indicatif.
-pub(crate) fn progress_bar(shown: ProgressDisplay, length: u64, template: &str) -> ProgressBar {
-    let bar = target(ProgressBar::new(length), shown);
-    bar.set_style(style(template));
-    bar
+/// A bar of a number of steps, where it is known, shown by a template of indicatif.
+pub(crate) fn progress_bar(
+    shown: ProgressDisplay,
+    steps: Option<usize>,
+    template: &str,
+) -> ProgressBar {
+    let bar = ProgressBar::no_length();
+    if let Some(steps) = steps {
+        bar.set_length(steps as u64);
+    }
+    if shown == ProgressDisplay::Never {
+        bar.set_draw_target(ProgressDrawTarget::hidden());
+    }
+    let style = ProgressStyle::with_template(template);
+    bar.with_style(style.expect("the template is well formed"))
 }
 
 impl Drop for Progress {
@@ -168,17 +175,6 @@ impl Drop for Progress {
         }
         LINE.set(self.before.take());
     }
-}
-
-fn target(bar: ProgressBar, shown: ProgressDisplay) -> ProgressBar {
-    if shown == ProgressDisplay::Never {
-        bar.set_draw_target(ProgressDrawTarget::hidden());
-    }
-    bar
-}
-
-fn style(template: &str) -> ProgressStyle {
-    ProgressStyle::with_template(template).expect("the template is well formed")
 }
 
 /// Time between two pictures of the line.

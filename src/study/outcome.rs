@@ -57,21 +57,25 @@ pub const INTERRUPTED: &str = "interrupted";
 /// Outcome of a run, and what was observed of its answer.
 pub type Ran = (RunOutcome, Option<Observed>);
 
+/// Status and message of a run without an answer.
+type NoAnswer = (&'static str, String);
+
 /// Runs a point once; where `markers` are named, its answer is observed after the clock has stopped.
 pub fn run(point: &StudyPoint, markers: Option<&[String]>) -> Ran {
-    let began = Instant::now();
     let run = Run {
         point,
         markers,
-        began,
+        began: Instant::now(),
     };
-    match &point.loaded.task {
+    let found = match &point.loaded.task {
         Task::Control(task) => run.control(task),
         Task::Motions(_) => unreachable!("refused where the study is read"),
         Task::Simulate(task) => run.motion(task),
         Task::Equilibrium(task) => run.rest(task),
         Task::Identify(_) => unreachable!("studies have no identifications"),
-    }
+    };
+    let none = |(status, message)| (run.outcome(status, Some(message), false), None);
+    found.unwrap_or_else(none)
 }
 
 /// A run that has begun.
@@ -82,97 +86,78 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Without an answer.
-    fn failed(&self, status: &'static str, message: String) -> Ran {
-        let ended = RunOutcome {
+    /// The outcome of a run that ends now.
+    fn outcome(
+        &self,
+        status: &'static str,
+        message: Option<String>,
+        is_solved: bool,
+    ) -> RunOutcome {
+        RunOutcome {
             status,
-            message: Some(message),
+            message,
             seconds: self.began.elapsed().as_secs_f64(),
-            is_solved: false,
-        };
-        (ended, None)
+            is_solved,
+        }
     }
 
-    fn refused(&self, error: WorkflowError) -> Ran {
+    fn refused(&self, error: WorkflowError) -> NoAnswer {
         let error = CommandError::in_file(&self.point.problem)(error);
-        self.failed(REFUSED, error.to_string())
+        (REFUSED, error.to_string())
     }
 
-    fn control(&self, task: &Control) -> Ran {
+    fn control(&self, task: &Control) -> Result<Ran, NoAnswer> {
         let system = &self.point.loaded.system;
         let mut on = |_: &Iterate<'_>| ControlFlow::Continue(());
-        let optimum = match optimise(system, task, None, SolveLimits::default(), &mut on) {
-            Ok(optimum) => optimum,
-            Err(error) => return self.refused(error),
-        };
+        let optimum = optimise(system, task, None, SolveLimits::default(), &mut on);
+        let optimum = optimum.map_err(|error| self.refused(error))?;
         let is_solved = optimum.is_solved();
         let none = || "the solver found no solution".to_owned();
-        let ended = RunOutcome {
-            status: optimum.word(),
-            message: (!is_solved).then(|| optimum.cause().map_or_else(none, Cause::message)),
-            // Verifying voltages is no part of finding them.
-            seconds: self.began.elapsed().as_secs_f64() - optimum.tested,
-            is_solved,
-        };
+        let message = (!is_solved).then(|| optimum.cause().map_or_else(none, Cause::message));
+        let mut ended = self.outcome(optimum.word(), message, is_solved);
+        // Verifying voltages is no part of finding them.
+        ended.seconds -= optimum.tested;
         let seen = self.markers.filter(|_| is_solved);
-        (ended, seen.map(|names| of_optimum(&optimum, names)))
+        Ok((ended, seen.map(|names| of_optimum(&optimum, names))))
     }
 
-    fn motion(&self, task: &Simulation) -> Ran {
+    fn motion(&self, task: &Simulation) -> Result<Ran, NoAnswer> {
         let mut interrupted = false;
-        let found = integrate(&self.point.loaded.system, task, |_, _| {
+        let simulated = integrate(&self.point.loaded.system, task, |_, _| {
             interrupted = stop::requested();
             match interrupted {
                 true => ControlFlow::Break(()),
                 false => ControlFlow::Continue(()),
             }
         });
-        let seconds = self.began.elapsed().as_secs_f64();
-        let simulated = match found {
-            Ok(simulated) => simulated,
-            Err(error) => return self.refused(error),
+        let simulated = simulated.map_err(|error| self.refused(error))?;
+        let status = match &simulated.failure {
+            Some(_) => "step_failed",
+            None if interrupted => INTERRUPTED,
+            None => "simulated",
         };
-        let is_solved = simulated.failure.is_none() && !interrupted;
-        let ended = RunOutcome {
-            status: match &simulated.failure {
-                Some(_) => "step_failed",
-                None if interrupted => INTERRUPTED,
-                None => "simulated",
-            },
-            message: simulated.failure.as_ref().map(ToString::to_string),
-            seconds,
-            is_solved,
-        };
-        let seen = self.markers.filter(|_| is_solved);
-        (ended, seen.map(|names| of_motion(&simulated, task, names)))
+        let message = simulated.failure.as_ref().map(ToString::to_string);
+        let ended = self.outcome(status, message, status == "simulated");
+        let seen = self.markers.filter(|_| ended.is_solved);
+        let seen = seen.map(|names| of_motion(&simulated, task, names));
+        Ok((ended, seen))
     }
 
-    fn rest(&self, task: &AtRest) -> Ran {
+    fn rest(&self, task: &AtRest) -> Result<Ran, NoAnswer> {
         let system = self.point.loaded.system.clone();
         let analysis = task.analysis(&system);
-        let model = match Model::for_analysis(system, analysis) {
-            Ok(model) => model,
-            Err(error) => return self.failed(REFUSED, error.to_string()),
-        };
+        let model = Model::for_analysis(system, analysis);
+        let model = model.map_err(|error| (REFUSED, error.to_string()))?;
         let zero = model.reference_coordinates();
-        let found = match stable_equilibrium(&model, &zero, &model.scalars(&task.voltages)) {
-            Ok(found) => found,
-            Err(error) => {
-                let status = match &error {
-                    EquilibriumError::LimitPoint { kind, .. } => {
-                        kind.map_or("limit_point", |kind| kind.key())
-                    }
-                    _ => "no_equilibrium",
-                };
-                return self.failed(status, error.to_string());
+        let found = stable_equilibrium(&model, &zero, &model.scalars(&task.voltages));
+        let found = found.map_err(|error| match &error {
+            EquilibriumError::LimitPoint { kind, .. } => {
+                let status = kind.map_or("limit_point", |kind| kind.key());
+                (status, error.to_string())
             }
-        };
-        let ended = RunOutcome {
-            status: found.status(),
-            message: None,
-            seconds: self.began.elapsed().as_secs_f64(),
-            is_solved: found.is_stable() != Some(false),
-        };
+            _ => ("no_equilibrium", error.to_string()),
+        })?;
+        let ended = self.outcome(found.status(), None, found.is_stable() != Some(false));
         let look = |names: &[String]| Observed {
             instants: vec![0.0],
             places: vec![marks(&model, &found.z, names)],
@@ -180,7 +165,7 @@ impl Run<'_> {
             iterations: found.iterations,
             ..Observed::default()
         };
-        (ended, self.markers.map(look))
+        Ok((ended, self.markers.map(look)))
     }
 }
 

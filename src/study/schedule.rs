@@ -60,7 +60,7 @@ pub(super) fn bar(study: &Study, runs: usize, shown: ProgressDisplay) -> Progres
     let count: usize = study.methods.iter().map(|m| m.points.len()).sum();
     progress_bar(
         shown,
-        (extra(study).len() + count * (1 + runs)) as u64,
+        Some(extra(study).len() + count * (1 + runs)),
         "{elapsed_precise} {wide_bar} run {pos} of {len}  {msg}",
     )
 }
