@@ -15,6 +15,7 @@ use crate::model::{Loops, Model, Role, System};
 use crate::nlp::{Entries, Nlp};
 use crate::report::canvas::{Align, Stroke, rectangle};
 use crate::report::origin::Origin;
+use crate::report::view::corners;
 use crate::report::{atomic, canvas, style, table};
 use crate::sparse::Symmetry;
 use crate::tasks::check::moved_markers;
@@ -405,25 +406,18 @@ const HUGE: f64 = 5e3;
 /// Robots smaller than this, in mm, get a question about their unit.
 const TINY: f64 = 0.1;
 
-/// Lower and upper corner in mm of the box around some places; `(+∞, −∞)` for none.
-type Corners = (Vector3<f64>, Vector3<f64>);
-
 /// Lines about the size of the robot and of its meshes in the reference configuration.
 fn unit_questions(system: &System) -> String {
-    let all = around(places(system));
-    if all.0.x > all.1.x {
+    let Some(all) = corners(places(system)) else {
         return String::new();
-    }
+    };
     let mut text = format!("extent of the robot: {}\n", dimensions(all));
     for solid in &system.solids {
-        let corners = around(solid.mesh.nodes.iter().copied());
-        text.push_str(&format!(
-            "extent of {}: {}\n",
-            solid.name,
-            dimensions(corners)
-        ));
+        let own = corners(solid.mesh.nodes.iter().copied()).map(dimensions);
+        let own = own.unwrap_or_default();
+        text.push_str(&format!("extent of {}: {own}\n", solid.name));
     }
-    let largest = (all.1 - all.0).max();
+    let largest = (all[1] - all[0]).max();
     if !(TINY..=HUGE).contains(&largest) {
         let length = match largest > HUGE {
             true => format!("{} m long", rounded(largest / 1e3)),
@@ -436,7 +430,7 @@ fn unit_questions(system: &System) -> String {
     text
 }
 
-fn dimensions((lower, upper): Corners) -> String {
+fn dimensions([lower, upper]: [Vector3<f64>; 2]) -> String {
     let [x, y, z] = [0, 1, 2].map(|axis| rounded(upper[axis] - lower[axis]));
     let least = 1e-9 * (upper - lower).max();
     let [a, b, c] = [0, 1, 2].map(|axis| match lower[axis] {
@@ -449,16 +443,6 @@ fn dimensions((lower, upper): Corners) -> String {
 /// Four digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.3e}").parse().unwrap_or(value) + 0.0
-}
-
-fn around(places: impl IntoIterator<Item = Vector3<f64>>) -> Corners {
-    let start = (
-        Vector3::repeat(f64::INFINITY),
-        Vector3::repeat(f64::NEG_INFINITY),
-    );
-    places
-        .into_iter()
-        .fold(start, |(lower, upper), x| (lower.inf(&x), upper.sup(&x)))
 }
 
 /// Corners of boxes around bodies, ends of muscles, joints and nodes.

@@ -6,6 +6,7 @@ use crate::model::components::{BlockLoad, Load, LoadPlace};
 use crate::model::system::{Attachment, JointKind, System};
 use crate::report::body::extent_points;
 use crate::report::skins::{Skins, normal};
+use crate::report::view::corners;
 use nalgebra::{Rotation3, Unit, Vector3};
 use std::collections::HashSet;
 
@@ -218,12 +219,8 @@ fn size(system: &System) -> f64 {
         .solids
         .iter()
         .flat_map(|solid| solid.mesh.nodes.iter().copied());
-    let points: Vec<_> = bodies.chain(joints).chain(loads).chain(nodes).collect();
-    let corner = |pick: fn(&Vector3<f64>, &Vector3<f64>) -> Vector3<f64>| {
-        points.iter().copied().reduce(|a, b| pick(&a, &b))
-    };
-    match (corner(Vector3::inf), corner(Vector3::sup)) {
-        (Some(low), Some(high)) if low != high => (high - low).norm(),
+    match corners(bodies.chain(joints).chain(loads).chain(nodes)) {
+        Some([low, high]) if low != high => (high - low).norm(),
         _ => 1.0,
     }
 }

@@ -9,19 +9,14 @@ use crate::report::curves;
 use crate::report::lines::{Aspect, LinePlot, Mark, Series};
 use crate::report::origin::Origin;
 use crate::report::style::{self, Dash};
+use crate::report::view::corners;
 use crate::report::viewpoint::Viewpoint;
 use crate::workflow::Tracked;
 
 /// The two axes of largest extent, horizontal first: y is never horizontal, and x goes before z.
 fn plane<'a>(points: impl Iterator<Item = &'a Vector3<f64>>) -> [usize; 2] {
-    let (mut low, mut high) = (
-        Vector3::repeat(f64::INFINITY),
-        Vector3::repeat(f64::NEG_INFINITY),
-    );
-    for point in points.filter(|p| p.iter().all(|x| x.is_finite())) {
-        (low, high) = (low.inf(point), high.sup(point));
-    }
-    let extent = high - low;
+    let finite = points.filter(|p| p.iter().all(|x| x.is_finite()));
+    let extent = corners(finite.copied()).map_or_else(Vector3::zeros, |[low, high]| high - low);
     // Among equals the plane x–z is preferred, then x–y.
     let smallest = [1, 2, 0]
         .into_iter()

@@ -112,6 +112,12 @@ impl View {
     }
 }
 
+/// Lower and upper corner of the box around points; none of no points.
+pub fn corners(points: impl IntoIterator<Item = Vector3<f64>>) -> Option<[Vector3<f64>; 2]> {
+    let points = points.into_iter().map(|point| [point, point]);
+    points.reduce(|[low, high], [point, _]| [low.inf(&point), high.sup(&point)])
+}
+
 /// Convex hull of places, by Andrew's monotone chain.
 pub fn hull(mut places: Vec<CanvasPoint>) -> Vec<CanvasPoint> {
     places.retain(|p| p.iter().all(|x| x.is_finite()));

@@ -21,6 +21,7 @@ use crate::report::origin::Origin;
 use crate::report::skins::{Skins, shown};
 use crate::report::solids::Prism;
 use crate::report::style;
+use crate::report::view::corners;
 
 /// Opacity of bodies, so that muscles within show.
 const GLASS: f32 = 0.35;
@@ -177,14 +178,7 @@ fn size(trajectory: &Trajectory, instants: &[usize]) -> f64 {
         let poses = trajectory.poses[k].iter().map(|pose| pose.centre);
         poses.chain(trajectory.marks[k].iter().copied())
     });
-    let all: Vec<_> = places.collect();
-    let low = all
-        .iter()
-        .fold(Vector3::repeat(f64::INFINITY), |a, b| a.inf(b));
-    let high = all
-        .iter()
-        .fold(Vector3::repeat(f64::NEG_INFINITY), |a, b| a.sup(b));
-    (high - low).max().max(1.0)
+    corners(places).map_or(1.0, |[low, high]| (high - low).max().max(1.0))
 }
 
 fn of_pose(pose: &Pose) -> Placed {
