@@ -24,9 +24,11 @@ const CODE: &str = "feedback.c";
 /// # Errors
 /// A file cannot be written.
 pub(super) fn add(
-    (control, task): (&Control, Option<&Regulator>),
+    control: &Control,
+    task: Option<&Regulator>,
     result: &SolveResult,
-    (summary, files): (&mut Summary, &mut FileSet),
+    summary: &mut Summary,
+    files: &mut FileSet,
     origin: &Origin,
 ) -> Result<(), WriteError> {
     let found = task.map(|task| {
@@ -56,11 +58,9 @@ pub(super) fn add(
             summary.notes.warn("feedback", found.warnings());
             summary.feedback = Some(found.report());
             files.add(JSON, law_json(&found.law, system).as_bytes())?;
-            files.add(
-                TABLE,
-                law_csv(&found.law, system, &origin.line()).as_bytes(),
-            )?;
-            files.add(CODE, law_c(&found.law, system, &origin.line()).as_bytes())?;
+            let origin = origin.line();
+            files.add(TABLE, law_csv(&found.law, system, &origin).as_bytes())?;
+            files.add(CODE, law_c(&found.law, system, &origin).as_bytes())?;
             let arrays = arrays(&found).map_err(WriteError::at(files.folder().join(ARRAYS)))?;
             return files.add(ARRAYS, &arrays);
         }

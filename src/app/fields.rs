@@ -173,8 +173,8 @@ impl<'m> Block<'m> {
         let elements = 0..block.shapes.len();
         let branches = elements.map(|e| model.branch_stress(number, e, state.here));
         let branches = branches.collect::<Vec<_>>();
-        let at = (&places[..], &potentials[..], velocities.as_deref());
-        let cell_data = cells(number, block, at, &branches);
+        let velocities = velocities.as_deref();
+        let cell_data = cells(number, block, &places, &potentials, velocities, &branches);
         Self {
             hexahedra: &mesh.hexahedra,
             points: places.iter().map(|x| x * 1e-3).collect(),
@@ -200,7 +200,9 @@ impl<'m> Block<'m> {
 fn cells(
     number: usize,
     block: &SolidBlock,
-    (places, potentials, velocities): (&[Vector], &[f64], Option<&[Vector]>),
+    places: &[Vector],
+    potentials: &[f64],
+    velocities: Option<&[Vector]>,
     branches: &[Option<Matrix>],
 ) -> Vec<Field<'static>> {
     let count = block.shapes.len();

@@ -146,12 +146,8 @@ impl Solved<'_> {
         let model = &optimum.model;
         let mut observed = observations(model, discrete);
         let origin = self.request.origin(true);
-        feedback_files::add(
-            (self.control, self.feedback),
-            result,
-            (summary, files),
-            &origin,
-        )?;
+        let (control, feedback) = (self.control, self.feedback);
+        feedback_files::add(control, feedback, result, summary, files, &origin)?;
         let written = fields::write(files, model, discrete, &origin)?;
         summary.blocks = blocks::entries(model, &observed, written);
         observed.columns.extend(result.exchange.columns());

@@ -94,12 +94,7 @@ pub fn read_study(path: &Path) -> Result<Study, SceneError> {
         .collect::<Result<Vec<_>, _>>()?;
     let reference = match &spec.reference {
         None => own(&methods, &scope)?,
-        Some(reference) => of_one(
-            &spec,
-            reference,
-            (&names, &methods),
-            &scope.key("reference"),
-        )?,
+        Some(reference) => of_one(&spec, reference, &methods, &scope.key("reference"))?,
     };
     let asked = same_question(&methods, &reference, &scope)?;
     Ok(Study {
@@ -181,12 +176,13 @@ fn own(methods: &[Method], scope: &Scope<'_>) -> Result<Reference, SceneError> {
 fn of_one(
     spec: &StudySpec,
     reference: &ReferenceSpec,
-    (names, methods): (&[String], &[Method]),
+    methods: &[Method],
     scope: &Scope<'_>,
 ) -> Result<Reference, SceneError> {
     let whole = Scope::of(scope.document);
     let place = scope.key("method");
-    let method = place.find(&reference.method, names, "the name of a method")?;
+    let names: Vec<String> = methods.iter().map(|one| one.name.clone()).collect();
+    let method = place.find(&reference.method, &names, "the name of a method")?;
     let points = match &reference.refine {
         None => Vec::new(),
         Some(refine) => points(spec, method, refine, &scope.key("refine"), &whole)?,

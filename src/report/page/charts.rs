@@ -160,7 +160,9 @@ fn charts_over_time(run: &Run<'_>) -> Vec<Value> {
         ),
     ];
     let each = all.into_iter().filter_map(|(title, panels)| {
-        let panels: Vec<Value> = panels.into_iter().filter_map(of_time).collect();
+        let panels = panels.into_iter();
+        let panels = panels.filter_map(|(label, curves)| of_time(label, curves));
+        let panels: Vec<Value> = panels.collect();
         let chart = json!({ "title": title, "kind": "panels", "time": true, "panels": panels });
         (!panels.is_empty()).then_some(chart)
     });
@@ -168,7 +170,7 @@ fn charts_over_time(run: &Run<'_>) -> Vec<Value> {
 }
 
 /// A panel of curves over time; what stays zero, such as the violation of constraints that were eliminated, has none.
-fn of_time((label, curves): (&str, Vec<Series>)) -> Option<Value> {
+fn of_time(label: &str, curves: Vec<Series>) -> Option<Value> {
     let mut values = curves.iter().flat_map(|one| &one.points);
     let exists = values.any(|point| point[1].is_finite() && point[1] != 0.0);
     exists.then(|| panel("", &LinePlot::over_time(label, curves)))
