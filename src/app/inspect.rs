@@ -270,7 +270,7 @@ fn of_control(
         .map_err(CommandError::in_file(&request.input))?;
     let (jacobian, hessian) = (program.jacobian_structure(), program.hessian_structure());
     let [variables, constraints] =
-        [program.variables(), program.constraints()].map(|bounds| bounds.lower.len());
+        [program.variables(), program.constraints()].map(|bounds| bounds.count());
     let intervals = match control.is_refined {
         true => "intervals of the first grid",
         false => "intervals",
@@ -304,7 +304,7 @@ fn of_control(
 fn program_sizes(program: &dyn Nlp) -> [(&'static str, usize); 6] {
     let rows = program.constraints();
     let equalities = rows.lower.iter().zip(&rows.upper).filter(|(l, u)| l == u);
-    let (variables, constraints) = (program.variables().lower.len(), rows.lower.len());
+    let (variables, constraints) = (program.variables().count(), rows.lower.len());
     let equalities = equalities.count();
     [
         ("variables", variables),
@@ -316,11 +316,11 @@ fn program_sizes(program: &dyn Nlp) -> [(&'static str, usize); 6] {
         ),
         (
             "nonzeros of the Jacobian",
-            program.jacobian_structure().rows.len(),
+            program.jacobian_structure().count(),
         ),
         (
             "nonzeros of the Hessian (lower triangle)",
-            program.hessian_structure().rows.len(),
+            program.hessian_structure().count(),
         ),
     ]
 }
@@ -378,12 +378,9 @@ fn sparsity_svg(name: &str, shape: [usize; 2], entries: &Entries, origin: &Origi
     let share = longest.div_ceil(CELLS);
     let cell = SIDE / longest.div_ceil(share) as f64;
     let size = [columns, rows].map(|count| count.div_ceil(share) as f64 * cell);
-    let mut cells: Vec<(usize, usize)> = entries
-        .rows
-        .iter()
-        .zip(&entries.cols)
-        .map(|(&row, &col)| (row as usize / share, col as usize / share))
-        .collect();
+    let cells = entries.places();
+    let cells = cells.map(|(row, col)| (row / share, col / share));
+    let mut cells: Vec<(usize, usize)> = cells.collect();
     cells.sort_unstable();
     cells.dedup();
     let sheet = size.map(|side| side + 2.0 * MARGIN);

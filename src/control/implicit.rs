@@ -118,16 +118,16 @@ impl ImplicitFunction {
         start: Option<&StartDerivatives>,
     ) -> Option<(Direct, DMatrix<f64>)> {
         let entries = program.jacobian_structure();
-        let mut values = vec![0.0; entries.rows.len()];
+        let mut values = vec![0.0; entries.count()];
         program.jacobian(x, &mut values);
         let mut right = DMatrix::zeros(self.size, count);
         let (mut places, mut left) = (Vec::new(), Vec::new());
-        for ((&row, &col), &value) in entries.rows.iter().zip(&entries.cols).zip(&values) {
-            let Some(row) = self.rows[row as usize] else {
+        for (row, col, value) in entries.with(&values) {
+            let Some(row) = self.rows[row] else {
                 continue;
             };
-            let value = value / program.column_scale(col as usize);
-            match &self.columns[col as usize] {
+            let value = value / program.column_scale(col);
+            match &self.columns[col] {
                 Argument::Unknown(unknown) => {
                     places.push((row, *unknown));
                     left.push(value);

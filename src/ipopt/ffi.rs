@@ -49,7 +49,7 @@ impl Problem {
     ) -> Option<Self> {
         let lock = is_alone.then(mumps::exclusive);
         let count = |number: usize| c_int::try_from(number).ok();
-        let (n, m) = (variables.lower.len(), constraints.lower.len());
+        let (n, m) = (variables.count(), constraints.count());
         assert!(
             variables.upper.len() == n && constraints.upper.len() == m,
             "as many upper as lower bounds"

@@ -198,12 +198,11 @@ impl From<Stage> for Unknown {
 ///
 /// Fixed variables are left out, unless there would be more equations than variables.
 fn layouts(variables: &Bounds, constraints: &Bounds, stages: &[Stage]) -> [Vec<Unknown>; 2] {
-    let is_equal = |bounds: &Bounds, i: usize| bounds.lower[i] == bounds.upper[i];
-    let rows = constraints.lower.len();
-    let equalities = (0..rows).filter(|&i| is_equal(constraints, i)).count();
+    let rows = constraints.count();
+    let equalities = (0..rows).filter(|&i| constraints.are_equal(i)).count();
     [false, true].map(|with_fixed| {
-        let mut unknowns: Vec<Unknown> = (0..variables.lower.len())
-            .filter(|&i| with_fixed || !is_equal(variables, i))
+        let mut unknowns: Vec<Unknown> = (0..variables.count())
+            .filter(|&i| with_fixed || !variables.are_equal(i))
             .map(|i| stages[i].into())
             .collect();
         let counts = [

@@ -28,7 +28,7 @@ use crate::ipopt::options::{Options, Start};
 use crate::ipopt::session::Session;
 use crate::ipopt::solution::{Iteration, SolverResult, StartingPoint};
 use crate::nlp::squares::{InSquares, Squares};
-use crate::nlp::{Bounds, Entries, Multipliers, Nlp, Status};
+use crate::nlp::{Bounds, Entries, Multipliers, Nlp, Status, slopes};
 use crate::sparse::mumps;
 use crate::stop;
 use std::ops::ControlFlow;
@@ -67,15 +67,11 @@ impl<N: Nlp> Solver<N> {
             hessian: program.hessian_structure(),
         };
         let Structures { jacobian, hessian } = &structures;
-        let (n, m) = (
-            program.variables().lower.len(),
-            program.constraints().lower.len(),
-        );
+        let (n, m) = (program.variables().count(), program.constraints().count());
         check_structure(jacobian, m, n, "Jacobian");
         check_structure(hessian, n, n, "Hessian");
-        let mut places = hessian.rows.iter().zip(&hessian.cols);
         assert!(
-            places.all(|(row, col)| row >= col),
+            hessian.places().all(|(row, col)| row >= col),
             "lower triangle of the Hessian"
         );
         let squares = Squares::from_program(&program);
@@ -142,12 +138,9 @@ impl<N: Nlp> Solver<N> {
         start: &StartingPoint,
         observer: &mut dyn FnMut(&Iteration, &Reached<'_>) -> ControlFlow<()>,
     ) -> Result<&SolverResult, IpoptError> {
-        let n = self.program().variables().lower.len();
-        assert_eq!(
-            start.x.len(),
-            n,
-            "one value per variable in the starting point"
-        );
+        let n = self.program().variables().count();
+        let values = start.x.len();
+        assert_eq!(values, n, "one value per variable in the starting point");
         self.result.x.clone_from(&start.x);
         let costates = &mut self.result.costates;
         match self.options.start {
@@ -173,7 +166,7 @@ impl<N: Nlp> Solver<N> {
         self.program.take_bounds(self.record.relaxed);
         let mut problem = self.known_problem()?;
         let scale = self.scale();
-        let (n, m) = (self.bounds.variables.lower.len(), self.bounds.right.len());
+        let (n, m) = (self.bounds.variables.count(), self.bounds.right.len());
         let mut x = mem::take(&mut self.result.x);
         let mut costates = mem::take(&mut self.result.costates);
         match self.options.start.is_dual() {
@@ -184,12 +177,7 @@ impl<N: Nlp> Solver<N> {
         self.squares.square(&mut x);
         if self.options.start == Start::Centred {
             let structures = &self.structures;
-            centre(
-                &mut self.program,
-                structures,
-                scale,
-                (&mut x, &mut costates),
-            );
+            centre(&mut self.program, structures, scale, &mut x, &mut costates);
         }
 
         self.record.iterations = mem::take(&mut self.result.iterations);
@@ -276,7 +264,7 @@ impl<N: Nlp> Solver<N> {
             constraints,
             ..
         } = &self.bounds;
-        let n = variables.lower.len();
+        let n = variables.count();
         self.session = is_along.then(|| {
             self.session.take().unwrap_or_else(|| {
                 let stages = program.stages();
@@ -289,7 +277,7 @@ impl<N: Nlp> Solver<N> {
         self.result.linear.solver = solver.to_owned();
         self.result.linear.why_not = taken.why_not;
         let Structures { jacobian, hessian } = &self.structures;
-        let (first, second) = (jacobian.rows.len(), hessian.rows.len());
+        let (first, second) = (jacobian.count(), hessian.count());
         let mut problem = Problem::new(variables, constraints, first, second, !is_along).ok_or(
             IpoptError::ProblemNotCreated {
                 variables: n,
@@ -459,11 +447,8 @@ impl KnownBounds {
 
     /// Returns true if there are as many equations as free variables.
     pub(super) fn is_square(&self) -> bool {
-        let equal = |bounds: &Bounds| {
-            let pairs = bounds.lower.iter().zip(&bounds.upper);
-            pairs.filter(|(lower, upper)| lower == upper).count()
-        };
-        self.variables.lower.len() - equal(&self.variables) == equal(&self.constraints)
+        let equal = |of: &Bounds| (0..of.count()).filter(|&i| of.are_equal(i)).count();
+        self.variables.count() - equal(&self.variables) == equal(&self.constraints)
     }
 }
 
@@ -488,9 +473,12 @@ pub(super) fn centre(
     nlp: &mut dyn Nlp,
     structures: &Structures,
     scale: f64,
-    (x, costates): (&mut [f64], &mut Multipliers),
+    x: &mut [f64],
+    costates: &mut Multipliers,
 ) {
-    let (slope, curvature) = slopes(nlp, structures, scale, x, &costates.constraints);
+    let y = &costates.constraints;
+    let slope = slopes(nlp, &structures.jacobian, scale, x, y);
+    let curvature = curvatures(nlp, &structures.hessian, scale, x, y);
     let is_known = |list: &[f64]| list.iter().all(|v| v.is_finite());
     if !is_known(&slope) || !is_known(&curvature) {
         return;
@@ -547,30 +535,15 @@ fn distance(gap: f64, r: f64, c: f64, mu: f64) -> f64 {
     }
 }
 
-/// First and second derivatives of f + Σ yᵢ gᵢ by each variable, f scaled.
-fn slopes(
-    nlp: &mut dyn Nlp,
-    structures: &Structures,
-    scale: f64,
-    x: &[f64],
-    y: &[f64],
-) -> (Vec<f64>, Vec<f64>) {
-    let Structures { jacobian, hessian } = structures;
-    let mut slope = vec![0.0; x.len()];
-    nlp.gradient(x, &mut slope);
-    slope.iter_mut().for_each(|g| *g *= scale);
-    let mut values = vec![0.0; jacobian.rows.len()];
-    nlp.jacobian(x, &mut values);
-    for ((&row, &col), value) in jacobian.rows.iter().zip(&jacobian.cols).zip(&values) {
-        slope[col as usize] += value * y[row as usize];
-    }
-    let mut values = vec![0.0; hessian.rows.len()];
+/// Second derivatives of f + Σ yᵢ gᵢ by each variable, f scaled.
+fn curvatures(nlp: &mut dyn Nlp, hessian: &Entries, scale: f64, x: &[f64], y: &[f64]) -> Vec<f64> {
+    let mut values = vec![0.0; hessian.count()];
     nlp.hessian(x, scale, y, &mut values);
     let mut curvature = vec![0.0; x.len()];
-    for ((&row, &col), value) in hessian.rows.iter().zip(&hessian.cols).zip(&values) {
+    for (row, col, value) in hessian.with(&values) {
         if row == col {
-            curvature[row as usize] += value;
+            curvature[row] += value;
         }
     }
-    (slope, curvature)
+    curvature
 }

@@ -18,6 +18,30 @@ pub struct Bounds {
 }
 
 impl Bounds {
+    /// No bounds of a number of entries.
+    pub fn none(count: usize) -> Self {
+        Self {
+            lower: vec![f64::NEG_INFINITY; count],
+            upper: vec![f64::INFINITY; count],
+        }
+    }
+
+    /// Number of entries.
+    pub const fn count(&self) -> usize {
+        self.lower.len()
+    }
+
+    /// Returns true if both bounds of entry `i` are equal.
+    pub fn are_equal(&self, i: usize) -> bool {
+        self.lower[i] == self.upper[i]
+    }
+
+    /// Adds the bounds of one more entry.
+    pub fn push(&mut self, lower: f64, upper: f64) {
+        self.lower.push(lower);
+        self.upper.push(upper);
+    }
+
     /// Moves values that are outside to the nearest bound.
     pub fn keep(&self, values: &mut [f64]) {
         for ((x, lower), upper) in values.iter_mut().zip(&self.lower).zip(&self.upper) {
@@ -51,6 +75,38 @@ pub struct Entries {
     pub rows: Vec<u32>,
     /// Column of each entry.
     pub cols: Vec<u32>,
+}
+
+impl Entries {
+    /// Number of entries.
+    pub const fn count(&self) -> usize {
+        self.rows.len()
+    }
+
+    /// Adds an entry.
+    pub fn push(&mut self, row: usize, col: usize) {
+        self.rows.push(row as u32);
+        self.cols.push(col as u32);
+    }
+
+    /// Row and column of each entry.
+    pub fn places(&self) -> impl Iterator<Item = (usize, usize)> {
+        let places = self.rows.iter().zip(&self.cols);
+        places.map(|(&row, &col)| (row as usize, col as usize))
+    }
+
+    /// Row, column and value of each entry.
+    pub fn with<'a>(&'a self, values: &'a [f64]) -> impl Iterator<Item = (usize, usize, f64)> {
+        let entries = self.places().zip(values);
+        entries.map(|((row, col), &value)| (row, col, value))
+    }
+
+    /// Adds Aᵀ v to a list.
+    pub fn add_transposed(&self, values: &[f64], v: &[f64], to: &mut [f64]) {
+        for (row, col, value) in self.with(values) {
+            to[col] += value * v[row];
+        }
+    }
 }
 
 /// Position of a variable along a horizon.
@@ -108,6 +164,23 @@ pub trait Nlp {
     fn constraint_name(&self, i: usize) -> String {
         format!("g[{i}]")
     }
+}
+
+/// ∂/∂x of s f + Σ yᵢ gᵢ with a factor s of the objective.
+pub(crate) fn slopes(
+    program: &mut dyn Nlp,
+    jacobian: &Entries,
+    scale: f64,
+    x: &[f64],
+    y: &[f64],
+) -> Vec<f64> {
+    let mut slopes = vec![0.0; x.len()];
+    program.gradient(x, &mut slopes);
+    slopes.iter_mut().for_each(|slope| *slope *= scale);
+    let mut values = vec![0.0; jacobian.count()];
+    program.jacobian(x, &mut values);
+    jacobian.add_transposed(&values, y, &mut slopes);
+    slopes
 }
 
 impl<N: Nlp + ?Sized> Nlp for &mut N {

@@ -124,13 +124,12 @@ pub(crate) struct InSquares<N> {
 impl<N: Nlp> InSquares<N> {
     /// A program, of which Jacobian and Hessian have these entries.
     pub(crate) fn new(program: N, squares: Squares, jacobian: &Entries, hessian: &Entries) -> Self {
-        let mut is_square = vec![false; program.variables().lower.len()];
+        let mut is_square = vec![false; program.variables().count()];
         for &(i, _) in &squares.list {
             is_square[i] = true;
         }
         let columns = jacobian.cols.iter().map(|&col| col as usize).enumerate();
-        let places = hessian.rows.iter().zip(&hessian.cols);
-        let places = places.map(|(&row, &col)| [row as usize, col as usize]);
+        let places = hessian.places().map(|(row, col)| [row, col]);
         let length = if squares.list.is_empty() {
             0
         } else {

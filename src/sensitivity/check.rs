@@ -114,3 +114,10 @@ pub enum NoSensitivity {
     #[error("{0}")]
     Refused(String),
 }
+
+impl NoSensitivity {
+    /// A refusal in words.
+    pub(crate) fn refused(reason: impl ToString) -> Self {
+        Self::Refused(reason.to_string())
+    }
+}

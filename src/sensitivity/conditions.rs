@@ -4,10 +4,11 @@
 //!
 //! Bounds that an optimum has reached: the multiplier of such a bound is greater than the distance from it.
 
-use crate::kkt::{Plan, Solver, Unknown};
+use crate::kkt::{Inertia, Plan, Solver, Unknown};
 use crate::nlp::squares::{InSquares, Squares};
 use crate::nlp::{Bounds, Entries, Multipliers, Nlp, Stage};
 use crate::sensitivity::check::NoSensitivity;
+use std::iter;
 
 /// A program at a point with multipliers, and its derivatives there.
 #[derive(Debug)]
@@ -21,10 +22,15 @@ pub(super) struct Conditions<N> {
     /// Bounds of the unknowns and of the constraints.
     pub(super) bounds: Bounds,
     pub(super) row_bounds: Bounds,
+    /// Places of both.
+    pub(super) columns: Vec<Place>,
+    pub(super) rows: Vec<Place>,
     /// The unknowns, and the multipliers of constraints.
     pub(super) x: Vec<f64>,
     pub(super) y: Vec<f64>,
     pub(super) gradient: Vec<f64>,
+    /// ∇f + Jᵀy.
+    pub(super) slopes: Vec<f64>,
     pub(super) g: Vec<f64>,
     /// The unknowns at which the constraints have these values.
     constrained: Vec<f64>,
@@ -32,13 +38,23 @@ pub(super) struct Conditions<N> {
     pub(super) hessian_values: Vec<f64>,
 }
 
+/// Places of variables and constraints.
+pub(super) enum Places<'a> {
+    /// Those of the optimum of an equal program to which Newton's method has moved.
+    Known([Vec<Place>; 2]),
+    /// Those that the multipliers show, of all that is not held.
+    Shown(&'a Held),
+}
+
 impl<N: Nlp> Conditions<N> {
-    /// A program at a point with its constraints; its multipliers become those of the unknowns and of the scaled objective. `squares` are the variables that enter by
-    /// their squares where the program does not know.
+    /// A program at a point x with its constraints. `squares` are the variables that enter by their squares where the program does not know. Variables that
+    /// have reached a bound are moved to it.
     pub(super) fn new(
         program: N,
-        (x, multipliers): (&[f64], &mut Multipliers),
+        x: &[f64],
+        multipliers: &Multipliers,
         squares: Option<&[usize]>,
+        places: Places<'_>,
     ) -> Self {
         let list = squares.map_or_else(|| program.squares(), <[usize]>::to_vec);
         let squares = Squares::of(&program, list);
@@ -47,95 +63,145 @@ impl<N: Nlp> Conditions<N> {
         let mut bounds = program.variables().clone();
         squares.square(&mut bounds.lower);
         squares.square(&mut bounds.upper);
-        let row_bounds = program.constraints().clone();
-        squares.of_squares(x, multipliers);
-        for list in [
-            &mut multipliers.constraints,
-            &mut multipliers.lower,
-            &mut multipliers.upper,
-        ] {
-            list.iter_mut().for_each(|value| *value *= scale);
-        }
         let mut unknowns = x.to_vec();
         squares.square(&mut unknowns);
+        // Those of the unknowns and of the scaled objective.
+        let mut multipliers = multipliers.clone();
+        squares.of_squares(x, &mut multipliers);
+        let Multipliers {
+            constraints: y,
+            lower,
+            upper,
+        } = &mut multipliers;
+        for list in [&mut *y, lower, upper] {
+            list.iter_mut().for_each(|value| *value *= scale);
+        }
         let mut out = Self {
+            row_bounds: program.constraints().clone(),
             program: InSquares::new(program, squares.clone(), &jacobian, &hessian),
             squares,
             scale,
             gradient: vec![0.0; x.len()],
-            g: vec![0.0; multipliers.constraints.len()],
-            jacobian_values: vec![0.0; jacobian.rows.len()],
-            hessian_values: vec![0.0; hessian.rows.len()],
+            slopes: vec![0.0; x.len()],
+            g: vec![0.0; y.len()],
+            jacobian_values: vec![0.0; jacobian.count()],
+            hessian_values: vec![0.0; hessian.count()],
             hessian,
             jacobian,
             bounds,
-            row_bounds,
+            columns: Vec::new(),
+            rows: Vec::new(),
             constrained: unknowns.clone(),
             x: unknowns,
-            y: multipliers.constraints.clone(),
+            y: y.clone(),
         };
         out.program.constraint(&out.x, &mut out.g);
+        out.take_places(places, &multipliers);
+        out.evaluate();
         out
     }
 
-    /// Puts a variable that is nearer to a bound than this to the bound.
-    pub(super) fn round(&mut self, i: usize, distance: f64) {
-        for bound in [self.bounds.lower[i], self.bounds.upper[i]] {
-            if (self.x[i] - bound).abs() < distance {
-                self.x[i] = bound;
+    /// Takes the places of variables and constraints, and puts variables at bounds that they have reached.
+    fn take_places(&mut self, places: Places<'_>, multipliers: &Multipliers) {
+        let is_known = matches!(places, Places::Known(_));
+        [self.columns, self.rows] = match places {
+            Places::Known(places) => places,
+            Places::Shown(held) => [
+                self.of_variables(multipliers, &held.variables),
+                self.of_constraints(&held.constraints),
+            ],
+        };
+        for (i, place) in self.columns.iter().enumerate() {
+            let bounds = [self.bounds.lower[i], self.bounds.upper[i]];
+            let x = &mut self.x[i];
+            match place {
+                Place::Lower => *x = bounds[0],
+                Place::Upper => *x = bounds[1],
+                // Where a bound is reached without a multiplier nothing of what follows is to be rounding.
+                Place::Free if !is_known => {
+                    for bound in bounds {
+                        if (*x - bound).abs() < WEAK {
+                            *x = bound;
+                        }
+                    }
+                }
+                _ => {}
             }
         }
+        for (y, place) in self.y.iter_mut().zip(&self.rows) {
+            if matches!(place, Place::Free | Place::Held) {
+                *y = 0.0;
+            }
+        }
+    }
+
+    /// Places of variables, by the multipliers of their lower and upper bounds.
+    fn of_variables(&self, multipliers: &Multipliers, is_held: &[bool]) -> Vec<Place> {
+        let (x, bounds) = (&self.x, &self.bounds);
+        let Multipliers { lower, upper, .. } = multipliers;
+        let place = |i: usize| {
+            let distances = [x[i] - bounds.lower[i], bounds.upper[i] - x[i]];
+            match is_held[i] || bounds.are_equal(i) {
+                true => Place::Held,
+                false => nearest(distances, [lower[i], upper[i]]),
+            }
+        };
+        (0..x.len()).map(place).collect()
+    }
+
+    /// Places of constraints, by their values and multipliers.
+    fn of_constraints(&self, is_left_out: &[bool]) -> Vec<Place> {
+        let (g, y, bounds) = (&self.g, &self.y, &self.row_bounds);
+        let place = |i: usize| {
+            let distances = [g[i] - bounds.lower[i], bounds.upper[i] - g[i]];
+            match bounds.are_equal(i) {
+                _ if is_left_out[i] => Place::Held,
+                true => Place::Equation,
+                false => nearest(distances, [-y[i], y[i]]),
+            }
+        };
+        (0..g.len()).map(place).collect()
     }
 
     /// Evaluates first derivatives and constraints.
     pub(super) fn evaluate(&mut self) {
         self.program.gradient(&self.x, &mut self.gradient);
-        self.gradient
-            .iter_mut()
-            .for_each(|value| *value *= self.scale);
+        let gradient = self.gradient.iter_mut();
+        gradient.for_each(|value| *value *= self.scale);
         if self.constrained != self.x {
             self.program.constraint(&self.x, &mut self.g);
             self.constrained.copy_from_slice(&self.x);
         }
         self.program.jacobian(&self.x, &mut self.jacobian_values);
+        self.slopes.copy_from_slice(&self.gradient);
+        let (values, slopes) = (&self.jacobian_values, &mut self.slopes);
+        self.jacobian.add_transposed(values, &self.y, slopes);
     }
 
     /// Evaluates second derivatives.
     pub(super) fn evaluate_hessian(&mut self) {
-        let (x, y) = (&self.x, &self.y);
-        self.program
-            .hessian(x, self.scale, y, &mut self.hessian_values);
-    }
-
-    /// ∇f + Jᵀy.
-    pub(super) fn slopes(&self) -> Vec<f64> {
-        let mut out = self.gradient.clone();
-        self.add_transposed(&self.y, &mut out);
-        out
+        let (x, y, values) = (&self.x, &self.y, &mut self.hessian_values);
+        self.program.hessian(x, self.scale, y, values);
     }
 
     /// Adds Jᵀ v to a list.
     pub(super) fn add_transposed(&self, v: &[f64], to: &mut [f64]) {
-        for (&row, &col, value) in entries(&self.jacobian, &self.jacobian_values) {
-            to[col as usize] += value * v[row as usize];
-        }
+        self.jacobian.add_transposed(&self.jacobian_values, v, to);
     }
 
     /// Adds J v to a list.
     pub(super) fn add_times(&self, v: &[f64], to: &mut [f64]) {
-        for (&row, &col, value) in entries(&self.jacobian, &self.jacobian_values) {
-            let v = v[col as usize];
+        for (row, col, value) in self.jacobian.with(&self.jacobian_values) {
             // Few columns change at once.
-            if v != 0.0 {
-                to[row as usize] += value * v;
+            if v[col] != 0.0 {
+                to[row] += value * v[col];
             }
         }
     }
 
     /// Adds ∇²L v to a list.
     pub(super) fn add_curved(&self, v: &[f64], to: &mut [f64]) {
-        for (&row, &col, value) in entries(&self.hessian, &self.hessian_values) {
-            let (row, col) = (row as usize, col as usize);
+        for (row, col, value) in self.hessian.with(&self.hessian_values) {
             if v[col] != 0.0 {
                 to[row] += value * v[col];
             }
@@ -145,19 +211,9 @@ impl<N: Nlp> Conditions<N> {
         }
     }
 
-    /// Stages of the variables.
-    pub(super) fn stages(&self) -> Option<Vec<Stage>> {
-        self.program.stages()
-    }
-
     /// The program.
     pub(super) fn program(&self) -> &N {
         &self.program.program
-    }
-
-    /// Bounds of the variables of the program.
-    pub(super) fn given_bounds(&self) -> &Bounds {
-        self.program.program.variables()
     }
 
     /// The variables of the program.
@@ -166,134 +222,152 @@ impl<N: Nlp> Conditions<N> {
         self.squares.root(&mut x);
         x
     }
-
-    /// Returns the name of a variable.
-    pub(super) fn variable_name(&self, i: usize) -> String {
-        self.program.program.variable_name(i)
-    }
-
-    /// Returns the name of a constraint.
-    pub(super) fn constraint_name(&self, i: usize) -> String {
-        self.program.program.constraint_name(i)
-    }
 }
 
-/// Rows, columns and values of a matrix.
-pub(super) fn entries<'a>(
-    entries: &'a Entries,
-    values: &'a [f64],
-) -> impl Iterator<Item = (&'a u32, &'a u32, &'a f64)> {
-    let places = entries.rows.iter().zip(&entries.cols);
-    places
-        .zip(values)
-        .map(|((row, col), value)| (row, col, value))
+/// The matrix of conditions over some of the variables and slacks of a program, and some of its constraints, with its factors.
+#[derive(Debug)]
+pub(crate) struct Saddle {
+    /// Number of each variable and slack among the unknowns, and of each constraint.
+    pub(crate) columns: Vec<Option<usize>>,
+    pub(crate) rows: Vec<Option<usize>>,
+    /// Entries of Hessian and Jacobian that are in the matrix.
+    kept: [Vec<usize>; 2],
+    entries: Entries,
+    values: Vec<f64>,
+    /// Unknowns that are constraints.
+    pub(crate) equations: usize,
+    pub(crate) solver: Solver,
+}
+
+impl Saddle {
+    /// Lays out the matrix of Hessian (lower triangle) and Jacobian; with `slacks` of constraints, which stand behind the variables, also Σ and their columns.
+    pub(crate) fn new(
+        [hessian, jacobian]: [&Entries; 2],
+        is_free: impl Iterator<Item = bool>,
+        holds: impl Iterator<Item = bool>,
+        slacks: Option<&[Option<usize>]>,
+        stages: Option<&[Stage]>,
+    ) -> Self {
+        let mut order = 0;
+        let mut number = |is_one: bool| {
+            is_one.then(|| {
+                order += 1;
+                order - 1
+            })
+        };
+        let columns: Vec<_> = is_free.map(&mut number).collect();
+        let rows: Vec<_> = holds.map(&mut number).collect();
+        let mut entries = Entries::default();
+        let mut keep = |from: &Entries, rows: &[Option<usize>]| {
+            let mut kept = Vec::new();
+            for (entry, (row, col)) in from.places().enumerate() {
+                if let (Some(row), Some(col)) = (rows[row], columns[col]) {
+                    entries.push(row, col);
+                    kept.push(entry);
+                }
+            }
+            kept
+        };
+        let kept = [keep(hessian, &columns), keep(jacobian, &rows)];
+        if slacks.is_some() {
+            let diagonal = columns.iter().flatten();
+            diagonal.for_each(|&i| entries.push(i, i));
+        }
+        let slack = |row: usize| slacks.and_then(|slacks| slacks[row]);
+        let of_slack = |row: usize| Some((rows[row]?, columns[slack(row)?]?));
+        let of_slacks = (0..rows.len()).filter_map(of_slack);
+        of_slacks.for_each(|(row, column)| entries.push(row, column));
+        let kinds = stages.map(|stages| {
+            let unknown = |i: usize| stages.get(i).map_or(Unknown::Slack, |&stage| stage.into());
+            let free = (0..columns.len()).filter(|&i| columns[i].is_some());
+            let held = (0..rows.len()).filter(|&row| rows[row].is_some());
+            let equation = |row| slack(row).map_or(Unknown::Equality, |_| Unknown::Inequality);
+            free.map(unknown).chain(held.map(equation)).collect()
+        });
+        let kinds: Option<Vec<Unknown>> = kinds;
+        let plan = Plan::new(order, &entries.rows, &entries.cols, kinds.as_deref());
+        Self {
+            solver: Solver::new(plan),
+            values: vec![0.0; entries.count()],
+            equations: rows.iter().flatten().count(),
+            columns,
+            rows,
+            kept,
+            entries,
+        }
+    }
+
+    /// Number of unknowns.
+    pub(crate) fn order(&self) -> usize {
+        self.solver.plan().order()
+    }
+
+    /// Factorises the matrix with values of Hessian and Jacobian, and Σ of each variable and slack, if slacks are laid out.
+    pub(crate) fn factor(&mut self, hessian: &[f64], jacobian: &[f64], sigma: &[f64]) -> Inertia {
+        let hessian = self.kept[0].iter().map(|&entry| hessian[entry]);
+        let jacobian = self.kept[1].iter().map(|&entry| jacobian[entry]);
+        let sigma = self.columns.iter().zip(sigma);
+        let sigma = sigma.filter_map(|(number, sigma)| number.map(|_| *sigma));
+        let of_slacks = iter::repeat(-1.0);
+        let all = hessian.chain(jacobian).chain(sigma).chain(of_slacks);
+        let values = self.values.iter_mut().zip(all);
+        values.for_each(|(to, value)| *to = value);
+        self.solver.factor(&self.values)
+    }
 }
 
 /// Steps of refinement.
 const REFINED: usize = 3;
 /// Residual of a solution, relative to the terms of its equations, that is that of rounding.
 pub(super) const EXACT: f64 = 1e-9;
+/// A bound whose distance and multiplier are both smaller is reached weakly.
+pub(super) const WEAK: f64 = 1e-6;
 
-/// The system with its factors.
-#[derive(Debug)]
-pub(super) struct Linear {
-    /// Number of each variable among the unknowns, and of each constraint.
-    columns: Vec<Option<usize>>,
-    rows: Vec<Option<usize>>,
-    /// Entries of Hessian and Jacobian that are in the matrix.
-    kept: [Vec<usize>; 2],
-    matrix: Matrix,
-    values: Vec<f64>,
-    /// Unknowns that are variables.
-    free: usize,
-    solver: Solver,
-}
-
-impl Linear {
-    /// Lays out the matrix of Hessian (lower triangle) and Jacobian.
-    pub(super) fn new(
-        [columns, rows]: [&[Place]; 2],
-        [hessian, jacobian]: [&Entries; 2],
-        stages: Option<&[Stage]>,
-    ) -> Result<Self, NoSensitivity> {
-        let mut free = 0;
-        let mut number = |is_kept: bool| {
-            is_kept.then(|| {
-                free += 1;
-                free - 1
-            })
-        };
-        let columns: Vec<_> = columns.iter().map(|c| number(*c == Place::Free)).collect();
-        let is_row = |row: &Place| row.is_reached() || *row == Place::Equation;
-        let rows: Vec<_> = rows.iter().map(|r| number(is_row(r))).collect();
-        let order = free;
-        let free = columns.iter().flatten().count();
-        if order - free > free {
+/// The linear system of the derivatives of an optimum.
+impl Saddle {
+    /// That of conditions, over unknowns that no bound holds and equations that hold.
+    pub(super) fn of<N: Nlp>(conditions: &Conditions<N>) -> Result<Self, NoSensitivity> {
+        let is_free = conditions.columns.iter().map(|place| *place == Place::Free);
+        let holds = conditions.rows.iter().map(|place| place.holds());
+        let free = is_free.clone().filter(|is_free| *is_free).count();
+        let equations = holds.clone().filter(|holds| *holds).count();
+        if equations > free {
             return Err(NoSensitivity::Overdetermined {
-                rows: order - free,
+                rows: equations,
                 columns: free,
             });
         }
-        let mut matrix = Matrix::default();
-        let kept = [
-            matrix.add(hessian, (&columns, &columns)),
-            matrix.add(jacobian, (&rows, &columns)),
-        ];
-        let kinds = stages.map(|stages| {
-            let all = columns.iter().zip(stages).filter(|(c, _)| c.is_some());
-            let mut kinds: Vec<Unknown> = all.map(|(_, &stage)| stage.into()).collect();
-            kinds.resize(order, Unknown::Equality);
-            kinds
-        });
-        let plan = Plan::new(order, &matrix.rows, &matrix.cols, kinds.as_deref());
-        Ok(Self {
-            solver: Solver::new(plan),
-            values: vec![0.0; matrix.rows.len()],
-            columns,
-            rows,
-            kept,
-            matrix,
-            free,
-        })
+        let structures = [&conditions.hessian, &conditions.jacobian];
+        let stages = conditions.program.stages();
+        Ok(Self::new(
+            structures,
+            is_free,
+            holds,
+            None,
+            stages.as_deref(),
+        ))
     }
 
-    /// Factorises the matrix with these values.
-    pub(super) fn factor(
-        &mut self,
-        hessian: &[f64],
-        jacobian: &[f64],
-    ) -> Result<(), NoSensitivity> {
-        let all = self.kept[0].iter().map(|&entry| hessian[entry]);
-        let all = all.chain(self.kept[1].iter().map(|&entry| jacobian[entry]));
-        self.values
-            .iter_mut()
-            .zip(all)
-            .for_each(|(value, new)| *value = new);
-        let equations = self.order() - self.free;
-        let found = self.solver.factor(&self.values);
-        match (found.zero, found.negative) {
-            (0, negative) if negative == equations => Ok(()),
-            (0, negative) if negative > equations => {
-                Err(NoSensitivity::NoMinimum(negative - equations))
-            }
+    /// Factorises the matrix of conditions, where they are those of a strict minimum.
+    pub(super) fn factor_of<N>(&mut self, conditions: &Conditions<N>) -> Result<(), NoSensitivity> {
+        let Conditions {
+            hessian_values,
+            jacobian_values,
+            ..
+        } = conditions;
+        let found = self.factor(hessian_values, jacobian_values, &[]);
+        match (found.zero, found.negative.checked_sub(self.equations)) {
+            (0, Some(0)) => Ok(()),
+            (0, Some(falling)) => Err(NoSensitivity::NoMinimum(falling)),
             _ => Err(NoSensitivity::Singular),
         }
-    }
-
-    /// Number of unknowns.
-    fn order(&self) -> usize {
-        self.free + self.rows.iter().flatten().count()
     }
 
     /// Replaces right-hand sides, by variable and by constraint, by the solution; entries of what is not in the system become zero.
     pub(super) fn solve(&mut self, x: &mut [f64], y: &mut [f64]) -> Result<(), NoSensitivity> {
         let mut right = vec![0.0; self.order()];
-        let all = self
-            .columns
-            .iter()
-            .zip(x.iter())
-            .chain(self.rows.iter().zip(y.iter()));
-        for (number, value) in all {
+        let all = self.columns.iter().chain(&self.rows);
+        for (number, value) in all.zip(x.iter().chain(&*y)) {
             number.iter().for_each(|&i| right[i] = *value);
         }
         let mut solution = right.clone();
@@ -314,8 +388,8 @@ impl Linear {
         if error > EXACT {
             return Err(NoSensitivity::Inexact(error));
         }
-        let all = self.columns.iter().zip(x).chain(self.rows.iter().zip(y));
-        for (number, value) in all {
+        let all = self.columns.iter().chain(&self.rows);
+        for (number, value) in all.zip(x.iter_mut().chain(y)) {
             *value = number.map_or(0.0, |i| solution[i]);
         }
         Ok(())
@@ -338,44 +412,12 @@ impl Linear {
     /// Hands on each term of the product of the matrix with a solution, with its row.
     #[inline(always)]
     fn each_term(&self, solution: &[f64], mut add: impl FnMut(usize, f64)) {
-        let places = self.matrix.rows.iter().zip(&self.matrix.cols);
-        for ((&row, &col), value) in places.zip(&self.values) {
-            let (row, col) = (row as usize, col as usize);
+        for (row, col, value) in self.entries.with(&self.values) {
             add(row, value * solution[col]);
             if row != col {
                 add(col, value * solution[row]);
             }
         }
-    }
-}
-
-/// Rows and columns of the entries of a matrix of conditions.
-#[derive(Debug, Default)]
-pub(crate) struct Matrix {
-    pub(crate) rows: Vec<u32>,
-    pub(crate) cols: Vec<u32>,
-}
-
-impl Matrix {
-    pub(crate) fn push(&mut self, row: usize, col: usize) {
-        self.rows.push(row as u32);
-        self.cols.push(col as u32);
-    }
-
-    /// Adds the entries whose row and column are unknowns; returns which they are.
-    pub(crate) fn add(
-        &mut self,
-        entries: &Entries,
-        (rows, cols): (&[Option<usize>], &[Option<usize>]),
-    ) -> Vec<usize> {
-        let mut kept = Vec::new();
-        for (entry, (&row, &col)) in entries.rows.iter().zip(&entries.cols).enumerate() {
-            if let (Some(row), Some(col)) = (rows[row as usize], cols[col as usize]) {
-                self.push(row, col);
-                kept.push(entry);
-            }
-        }
-        kept
     }
 }
 
@@ -409,6 +451,11 @@ impl Place {
         matches!(self, Self::Lower | Self::Upper)
     }
 
+    /// Returns true of an equation, or an inequality whose bound is reached.
+    pub(super) fn holds(self) -> bool {
+        self.is_reached() || self == Self::Equation
+    }
+
     /// Sign of the multiplier in `∇f + Jᵀy + z = 0`: negative at a lower bound.
     pub(super) fn sign(self) -> f64 {
         match self {
@@ -416,39 +463,6 @@ impl Place {
             _ => 1.0,
         }
     }
-}
-
-/// Places of variables; `multipliers` of their lower and upper bounds.
-pub(super) fn of_variables(
-    (x, bounds): (&[f64], &Bounds),
-    [lower, upper]: [&[f64]; 2],
-    is_held: &[bool],
-) -> Vec<Place> {
-    let place = |i: usize| {
-        let distances = [x[i] - bounds.lower[i], bounds.upper[i] - x[i]];
-        match is_held[i] || bounds.lower[i] == bounds.upper[i] {
-            true => Place::Held,
-            false => nearest(distances, [lower[i], upper[i]]),
-        }
-    };
-    (0..x.len()).map(place).collect()
-}
-
-/// Places of constraints with these values and multipliers.
-pub(super) fn of_constraints(
-    (g, bounds): (&[f64], &Bounds),
-    multipliers: &[f64],
-    is_left_out: &[bool],
-) -> Vec<Place> {
-    let place = |i: usize| {
-        let distances = [g[i] - bounds.lower[i], bounds.upper[i] - g[i]];
-        match bounds.lower[i] == bounds.upper[i] {
-            _ if is_left_out[i] => Place::Held,
-            true => Place::Equation,
-            false => nearest(distances, [-multipliers[i], multipliers[i]]),
-        }
-    };
-    (0..g.len()).map(place).collect()
 }
 
 /// The bound whose multiplier is greater than the distance from it.

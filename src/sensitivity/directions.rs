@@ -11,13 +11,14 @@ use crate::control::{
     Argument, BoundaryConditions, BoundedQuantity, Column, ImplicitFunction, InitialGuess, Row,
     Transcription, When, momentum_slopes, resolve_start,
 };
-use crate::dynamics::{DiscreteTrajectory, Equilibrium, Start};
+use crate::dynamics::{DiscreteTrajectory, Start};
 use crate::math::Signal;
 use crate::model::{Coordinates, Model, Role, What};
 use crate::nlp::Nlp;
 use crate::sensitivity::check::NoSensitivity;
-use crate::sensitivity::conditions::{Direction, Held, Side};
-use crate::sensitivity::with_parameters::Opened;
+use crate::sensitivity::conditions::{Direction, Side};
+use crate::sensitivity::kernel::Kernel;
+use crate::sensitivity::with_parameters::{AtRest, Opened};
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
@@ -28,7 +29,8 @@ const BESIDE: f64 = 1e-9;
 pub(super) struct Directions<'a> {
     opened: &'a Opened,
     program: &'a Transcription<'a>,
-    held: &'a Held,
+    /// True for each column that the solved program lacks.
+    is_new: &'a [bool],
     /// The start as the problem gives it.
     start: &'a BoundaryState,
     /// Derivatives of the states of rest at start and goal by parameters of the model, then by sources.
@@ -39,9 +41,12 @@ pub(super) struct Directions<'a> {
 }
 
 impl<'a> Directions<'a> {
+    /// Those of an opened problem, at the optimum of its program.
     pub(super) fn new(
         opened: &'a Opened,
-        (program, held, point): (&'a Transcription<'a>, &'a Held, &'a [f64]),
+        kernel: &'a Kernel<Transcription<'a>>,
+        is_new: &'a [bool],
+        squares: &[usize],
         start: &'a BoundaryState,
     ) -> Result<Self, NoSensitivity> {
         let sources = [0, 1].map(|end| {
@@ -50,30 +55,22 @@ impl<'a> Directions<'a> {
                 VariedOf::GoalVoltage(source) if end == 1 => Some(source),
                 _ => None,
             };
-            opened
-                .control
-                .varied
-                .iter()
-                .filter_map(of)
-                .collect::<Vec<_>>()
+            let all = opened.control.varied.iter().filter_map(of);
+            all.collect::<Vec<_>>()
         });
         let is_any = opened.control.parameters.len() > opened.sought;
         let of = |end: usize| {
-            let Some((state, voltages)) = &opened.rests[end] else {
-                return Ok(None);
-            };
-            if !is_any && sources[end].is_empty() {
-                return Ok(None);
-            }
-            let state = (state, &voltages[..]);
-            rest_derivatives(&opened.model, &opened.control, state, &sources[end]).map(Some)
+            let rest = opened.rests[end].as_ref();
+            let rest = rest.filter(|_| is_any || !sources[end].is_empty());
+            let by = rest.map(|rest| rest_derivatives(opened, rest, &sources[end]));
+            by.transpose()
         };
         Ok(Self {
             rests: [of(0)?, of(1)?],
-            weights: of_weights(opened, held, point)?,
+            weights: of_weights(opened, squares, &kernel.point())?,
+            program: kernel.program(),
             opened,
-            program,
-            held,
+            is_new,
             start,
             sources,
         })
@@ -81,30 +78,29 @@ impl<'a> Directions<'a> {
 
     /// The direction of a number, by its unit inside.
     pub(super) fn of(&self, varied: &Varied) -> Result<Direction, NoSensitivity> {
-        let not_offered =
-            |what: &str| Err(NoSensitivity::Refused(format!("{}: {what}", varied.name)));
+        let not_offered = |what: &str| {
+            let name = &varied.name;
+            NoSensitivity::refused(format!("{name}: {what}"))
+        };
         match varied.of {
             VariedOf::Constants(_) => Ok(self.of_constants(varied)),
-            VariedOf::Duration => match self.program.unknowns().horizon() {
-                Some(column) => {
-                    let part = 1.0 / self.program.intervals() as f64;
-                    Ok(self.of_held([(column, part)]))
-                }
-                None => not_offered("the duration is no constant"),
-            },
-            VariedOf::GoalJoint(joint) => self.of_goal_joint(joint).map_or_else(
-                || not_offered("a goal of all joints is no variable in redundant coordinates"),
-                Ok,
-            ),
+            VariedOf::Duration => {
+                let column = self.program.unknowns().horizon();
+                let column = column.ok_or_else(|| not_offered("the duration is no constant"))?;
+                let part = 1.0 / self.program.intervals() as f64;
+                Ok(self.of_held([(column, part)]))
+            }
+            VariedOf::GoalJoint(joint) => self.of_goal_joint(joint).ok_or_else(|| {
+                not_offered("a goal of all joints is no variable in redundant coordinates")
+            }),
             VariedOf::GoalPlace { marker, axis } => Ok(self.of_goal_row(|bounded| {
                 !bounded.quantity.is_step() && bounded.quantity.what == (What::Place { marker, axis })
             })),
             VariedOf::GoalVoltage(source) => self.of_rest_voltage(1, source),
             VariedOf::StartVoltage(source) => self.of_rest_voltage(0, source),
-            VariedOf::StartJoint(joint) => self.of_start_joint(joint).map_or_else(
-                || not_offered("a start of joint coordinates is offered in reduced coordinates and at rest alone"),
-                Ok,
-            ),
+            VariedOf::StartJoint(joint) => self.of_start_joint(joint).ok_or_else(|| {
+                not_offered("a start of joint coordinates is offered in reduced coordinates and at rest alone")
+            }),
             VariedOf::StartRate(joint) => self.of_start_rate(joint),
             VariedOf::VoltageBound(side) => Ok(self.of_input_bounds(side, |_| true, Role::Voltage)),
             VariedOf::LoadBound(source, side) => {
@@ -138,7 +134,7 @@ impl<'a> Directions<'a> {
         let n = self.model().coordinate_count();
         let columns = self.program.unknowns().columns.iter().enumerate();
         columns.filter_map(move |(number, column)| match *column {
-            Column::Instant { k, i } if k == at && i < n && self.held.variables[number] => {
+            Column::Instant { k, i } if k == at && i < n && self.is_new[number] => {
                 Some((number, i))
             }
             _ => None,
@@ -147,11 +143,8 @@ impl<'a> Directions<'a> {
 
     fn of_constants(&self, varied: &Varied) -> Direction {
         let parameters = &self.model().analysis.parameters;
-        let is_it = |one: &crate::model::Parameter| one.name == varied.name;
-        let place = parameters
-            .iter()
-            .position(is_it)
-            .expect("a parameter of the model");
+        let place = parameters.iter().position(|one| one.name == varied.name);
+        let place = place.expect("a parameter of the model");
         let s = self.model().variables.range(Role::Parameter).nth(place);
         let columns = &self.program.unknowns().columns;
         let is_own = |one: &Column| matches!(*one, Column::Parameter { s: own } if Some(own) == s);
@@ -163,20 +156,18 @@ impl<'a> Directions<'a> {
 
     /// Derivatives of the coordinates of a state of rest by one of the columns of its derivatives.
     fn by_rest(&self, end: usize, column: usize) -> Vec<(usize, f64)> {
-        match &self.rests[end] {
-            Some(by) => self
-                .of_end(end)
-                .map(|(number, i)| (number, by[(i, column)]))
-                .collect(),
-            None => Vec::new(),
-        }
+        let of = |by: &DMatrix<f64>| -> Vec<_> {
+            let own = self.of_end(end);
+            own.map(|(number, i)| (number, by[(i, column)])).collect()
+        };
+        self.rests[end].as_ref().map(of).unwrap_or_default()
     }
 
     fn of_rest_voltage(&self, end: usize, source: usize) -> Result<Direction, NoSensitivity> {
         let objective = &self.opened.control.objective;
         if objective.rate != 0.0 || !objective.energies.is_empty() {
             let reason = "a voltage at rest is offered where the objective counts neither rates nor energies";
-            return Err(NoSensitivity::Refused(reason.to_owned()));
+            return Err(NoSensitivity::refused(reason));
         }
         let place = self.sources[end].iter().position(|one| *one == source);
         let place = place.expect("a source that is open");
@@ -223,13 +214,8 @@ impl<'a> Directions<'a> {
     }
 
     fn of_start_joint(&self, joint: usize) -> Option<Direction> {
-        let is_moving = self
-            .opened
-            .boundary
-            .start
-            .momentum
-            .iter()
-            .any(|p| *p != 0.0);
+        let mut momenta = self.opened.boundary.start.momentum.iter();
+        let is_moving = momenta.any(|p| *p != 0.0);
         let c = self.coordinate(joint).filter(|_| !is_moving)?;
         let column = self.of_end(0).find(|(_, i)| *i == c)?;
         Some(self.of_held([(column.0, 1.0)]))
@@ -238,8 +224,7 @@ impl<'a> Directions<'a> {
     /// Momenta are linear in rates.
     fn of_start_rate(&self, joint: usize) -> Result<Direction, NoSensitivity> {
         let BoundaryState::JointAngles { angles, .. } = self.start else {
-            let reason = "the start has no rates".to_owned();
-            return Err(NoSensitivity::Refused(reason));
+            return Err(NoSensitivity::refused("the start has no rates"));
         };
         let unit = BoundaryState::JointAngles {
             angles: angles.clone(),
@@ -247,21 +232,19 @@ impl<'a> Directions<'a> {
             velocities: BTreeMap::new(),
         };
         let start = resolve_start(self.model(), &unit, "start");
-        let mut start = start.map_err(|error| NoSensitivity::Refused(error.to_string()))?;
+        let mut start = start.map_err(NoSensitivity::refused)?;
         let slopes = momentum_slopes(self.model(), (&unit, &mut start));
-        slopes.map_err(|_| {
-            NoSensitivity::Refused("momenta are no straight line in a mass".to_owned())
-        })?;
+        slopes.map_err(|_| NoSensitivity::refused("momenta are no straight line in a mass"))?;
         let rows = self.program.unknowns().rows.iter().enumerate();
-        let of = |(row, of): (usize, &Row)| match *of {
+        let rows = rows.filter_map(|(row, of)| match *of {
             Row::Instant { k: 0, i } => {
                 let momentum = start.momentum.get(i).copied()?;
                 Some((row, self.program.row_scale(row) * momentum))
             }
             _ => None,
-        };
+        });
         Ok(Direction {
-            constraints: rows.filter_map(of).collect(),
+            constraints: rows.collect(),
             ..Direction::default()
         })
     }
@@ -275,13 +258,13 @@ impl<'a> Directions<'a> {
         let variables = &self.model().variables;
         let side = [Side::Lower, Side::Upper][side];
         let columns = self.program.unknowns().columns.iter().enumerate();
-        let of = |(number, column): (usize, &Column)| {
+        let bounds = columns.filter_map(|(number, column)| {
             let variable = column.of(variables);
             let is_one = variable.role == role && is_one(variable.source);
             is_one.then(|| (number, side, 1.0 / self.program.column_scale(number)))
-        };
+        });
         Direction {
-            bounds: columns.filter_map(of).collect(),
+            bounds: bounds.collect(),
             ..Direction::default()
         }
     }
@@ -290,7 +273,7 @@ impl<'a> Directions<'a> {
 /// Directions of weights: the objective is linear in them, and its derivative by one is that with this weight alone. One program is built for all.
 fn of_weights(
     opened: &Opened,
-    held: &Held,
+    squares: &[usize],
     point: &[f64],
 ) -> Result<Vec<(WeightOf, Direction)>, NoSensitivity> {
     let weight = |one: &Varied| match one.of {
@@ -312,10 +295,10 @@ fn of_weights(
         ..opened.control.clone()
     };
     let program = Transcription::of_any(model, boundary, &control, initial);
-    let mut program = program.map_err(|error| NoSensitivity::Refused(error.to_string()))?;
+    let mut program = program.map_err(NoSensitivity::refused)?;
     let mut x = point.to_vec();
     // Where a square is zero its root has no slope: the slope by the square is that beside zero.
-    for &square in held.squares.iter().flatten() {
+    for &square in squares {
         x[square] = x[square].max(BESIDE * program.variables().upper[square]);
     }
     let mut direction = |weight: WeightOf| {
@@ -340,12 +323,13 @@ fn of_weights(
 }
 
 /// Derivatives of the coordinates of a state of rest: a column for each parameter of the model, then one for each of the sources.
-pub(super) fn rest_derivatives(
-    model: &Model,
-    control: &Control,
-    (state, voltages): (&Equilibrium, &[f64]),
+fn rest_derivatives(
+    opened: &Opened,
+    rest: &AtRest,
     sources: &[usize],
 ) -> Result<DMatrix<f64>, NoSensitivity> {
+    let Opened { model, control, .. } = opened;
+    let AtRest { state, voltages } = rest;
     let control = still(control, voltages, sources);
     let n = model.coordinate_count();
     let start = Start::at_rest(model, state.z.clone());
@@ -362,8 +346,8 @@ pub(super) fn rest_derivatives(
         carried: Default::default(),
     };
     let program = Transcription::of_any(model, &boundary, &control, &initial);
-    let program = program.map_err(|error| NoSensitivity::Refused(error.to_string()))?;
-    let singular = || NoSensitivity::Refused("a state of rest has no derivative".to_owned());
+    let program = program.map_err(NoSensitivity::refused)?;
+    let singular = || NoSensitivity::refused("a state of rest has no derivative");
     solved(program, &initial, sources).ok_or_else(singular)
 }
 

@@ -12,10 +12,9 @@
 use crate::nlp::{Multipliers, Nlp};
 use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::conditions::{
-    Conditions, Direction, EXACT, Held, Linear, Place, Side, entries, largest, of_constraints,
-    of_variables,
+    Conditions, Direction, EXACT, Held, Place, Places, Saddle, Side, WEAK, largest,
 };
-use crate::sensitivity::margins::{At, Changes, Margin, Of, Range};
+use crate::sensitivity::margins::{Changes, Margin, Of, Range};
 
 /// Most steps of Newton's method to the optimum.
 const STEPS: usize = 6;
@@ -24,8 +23,6 @@ const SMALL: f64 = 1e-9;
 const ROUNDING: f64 = 1e-12;
 /// Conditions hold that are met up to this.
 const MET: f64 = 1e-8;
-/// A bound whose distance and multiplier are both smaller is reached weakly.
-pub(super) const WEAK: f64 = 1e-6;
 /// Two derivatives of the objective that differ by less, relative to their terms, are one.
 const SAME: f64 = 1e-6;
 
@@ -61,11 +58,7 @@ pub(super) struct Change {
 #[derive(Debug)]
 pub struct Kernel<N> {
     pub(super) conditions: Conditions<N>,
-    pub(super) linear: Linear,
-    pub(super) columns: Vec<Place>,
-    pub(super) rows: Vec<Place>,
-    /// ∇f + Jᵀy.
-    slopes: Vec<f64>,
+    linear: Saddle,
     moved: f64,
 }
 
@@ -79,66 +72,22 @@ impl<N: Nlp> Kernel<N> {
     /// If lengths contradict each other.
     pub fn new(
         program: N,
-        point: (&[f64], &Multipliers),
+        x: &[f64],
+        multipliers: &Multipliers,
         held: &Held,
     ) -> Result<Self, NoSensitivity> {
-        Self::with_places(program, point, held, None)
+        let (squares, places) = (held.squares.as_deref(), Places::Shown(held));
+        Self::of(Conditions::new(program, x, multipliers, squares, places))
     }
 
-    /// As [`new`](Self::new), for the optimum of an equal program to which Newton's method has moved: places of its variables and constraints are known.
-    pub(super) fn with_places(
-        program: N,
-        (x, multipliers): (&[f64], &Multipliers),
-        held: &Held,
-        places: Option<[Vec<Place>; 2]>,
-    ) -> Result<Self, NoSensitivity> {
-        let mut multipliers = multipliers.clone();
-        let mut conditions =
-            Conditions::new(program, (x, &mut multipliers), held.squares.as_deref());
-        let is_known = places.is_some();
-        let Multipliers {
-            constraints,
-            lower,
-            upper,
-        } = &multipliers;
-        let [columns, rows] = places.unwrap_or_else(|| {
-            let of_columns = (&*conditions.x, &conditions.bounds);
-            let of_rows = (&*conditions.g, &conditions.row_bounds);
-            [
-                of_variables(of_columns, [lower, upper], &held.variables),
-                of_constraints(of_rows, constraints, &held.constraints),
-            ]
-        });
-        for (i, place) in columns.iter().enumerate() {
-            match place {
-                Place::Lower => conditions.x[i] = conditions.bounds.lower[i],
-                Place::Upper => conditions.x[i] = conditions.bounds.upper[i],
-                // Where a bound is reached without a multiplier nothing of what follows is to be rounding.
-                Place::Free if !is_known => conditions.round(i, WEAK),
-                _ => {}
-            }
-        }
-        for (i, place) in rows.iter().enumerate() {
-            if matches!(place, Place::Free | Place::Held) {
-                conditions.y[i] = 0.0;
-            }
-        }
-        conditions.evaluate();
-        let linear = Linear::new(
-            [&columns, &rows],
-            [&conditions.hessian, &conditions.jacobian],
-            conditions.stages().as_deref(),
-        )?;
+    /// That of conditions at a point near the optimum.
+    pub(super) fn of(conditions: Conditions<N>) -> Result<Self, NoSensitivity> {
         let mut out = Self {
-            slopes: Vec::new(),
-            moved: 0.0,
+            linear: Saddle::of(&conditions)?,
             conditions,
-            linear,
-            columns,
-            rows,
+            moved: 0.0,
         };
         out.approach()?;
-        out.slopes = out.conditions.slopes();
         out.check_bounds()?;
         Ok(out)
     }
@@ -147,12 +96,7 @@ impl<N: Nlp> Kernel<N> {
     fn approach(&mut self) -> Result<(), NoSensitivity> {
         for _ in 0..STEPS {
             self.conditions.evaluate_hessian();
-            let Conditions {
-                hessian_values,
-                jacobian_values,
-                ..
-            } = &self.conditions;
-            self.linear.factor(hessian_values, jacobian_values)?;
+            self.linear.factor_of(&self.conditions)?;
             let [mut dx, mut dy] = self.residuals();
             dx.iter_mut()
                 .chain(&mut dy)
@@ -183,34 +127,26 @@ impl<N: Nlp> Kernel<N> {
 
     /// Residuals of the conditions of unknowns and of equations; zero of all others.
     fn residuals(&self) -> [Vec<f64>; 2] {
-        let Conditions { g, row_bounds, .. } = &self.conditions;
-        let mut of_x = self.conditions.slopes();
-        for (value, place) in of_x.iter_mut().zip(&self.columns) {
+        let of = &self.conditions;
+        let mut of_x = of.slopes.clone();
+        for (value, place) in of_x.iter_mut().zip(&of.columns) {
             if *place != Place::Free {
                 *value = 0.0;
             }
         }
-        let of_row = |(i, place): (usize, &Place)| match place {
-            Place::Lower | Place::Equation => g[i] - row_bounds.lower[i],
-            Place::Upper => g[i] - row_bounds.upper[i],
+        let of_row = |i: usize| match of.rows[i] {
+            Place::Lower | Place::Equation => of.g[i] - of.row_bounds.lower[i],
+            Place::Upper => of.g[i] - of.row_bounds.upper[i],
             Place::Free | Place::Held => 0.0,
         };
-        [of_x, self.rows.iter().enumerate().map(of_row).collect()]
-    }
-
-    pub(super) fn at(&self) -> At<'_, N> {
-        At {
-            conditions: &self.conditions,
-            columns: &self.columns,
-            rows: &self.rows,
-            slopes: &self.slopes,
-        }
+        [of_x, (0..of.rows.len()).map(of_row).collect()]
     }
 
     /// Distances from bounds, and multipliers, as they are.
-    pub(super) fn margins(&self) -> Vec<Margin<Of>> {
-        let [columns, rows] = [&self.columns, &self.rows].map(|list| vec![0.0; list.len()]);
-        self.at().margins(Changes {
+    fn margins(&self) -> Vec<Margin> {
+        let Conditions { columns, rows, .. } = &self.conditions;
+        let [columns, rows] = [columns, rows].map(|list| vec![0.0; list.len()]);
+        self.conditions.margins(Changes {
             x: &columns,
             y: &rows,
             slopes: &columns,
@@ -222,14 +158,9 @@ impl<N: Nlp> Kernel<N> {
     /// Checks that bounds push the right way and are kept.
     fn check_bounds(&self) -> Result<(), NoSensitivity> {
         match self.margins().iter().find(|margin| margin.distance < -WEAK) {
-            Some(margin) => Err(NoSensitivity::Undecided(self.at().words(margin.of))),
+            Some(margin) => Err(NoSensitivity::Undecided(self.conditions.words(margin.of))),
             None => Ok(()),
         }
-    }
-
-    /// Places of variables and constraints.
-    pub(super) fn places(&self) -> [&[Place]; 2] {
-        [&self.columns, &self.rows]
     }
 
     /// Greatest step of Newton's method to the optimum, in the scales of the program.
@@ -256,11 +187,11 @@ impl<N: Nlp> Kernel<N> {
     /// Changes of all that a direction gives, in the units of the conditions.
     pub(super) fn change(&self, direction: &Direction) -> Change {
         let conditions = &self.conditions;
-        let (columns, rows) = (self.columns.len(), self.rows.len());
+        let (columns, rows) = (conditions.columns.len(), conditions.rows.len());
         let x = conditions.point();
         let mut given = vec![0.0; columns];
         let reached = direction.bounds.iter();
-        let reached = reached.filter(|(i, side, _)| self.columns[*i] == side.place());
+        let reached = reached.filter(|(i, side, _)| conditions.columns[*i] == side.place());
         let held = direction.held.iter().copied();
         for (i, value) in held.chain(reached.map(|&(i, _, value)| (i, value))) {
             given[i] += conditions.squares.rate(i, x[i]) * value;
@@ -277,13 +208,13 @@ impl<N: Nlp> Kernel<N> {
         // Inequalities that are not reached move by that which is no change of a bound.
         let values = of_rows.clone();
         for &(i, side, value) in &direction.constraint_bounds {
-            let is_one = self.rows[i] == side.place();
-            if is_one || (self.rows[i] == Place::Equation && side == Side::Lower) {
+            let is_one = conditions.rows[i] == side.place();
+            if is_one || (conditions.rows[i] == Place::Equation && side == Side::Lower) {
                 of_rows[i] -= value;
             }
         }
         Change {
-            envelope: dot(&self.slopes, &given) + dot(&conditions.y, &of_rows),
+            envelope: dot(&conditions.slopes, &given) + dot(&conditions.y, &of_rows),
             given,
             slopes,
             rows: of_rows,
@@ -336,15 +267,14 @@ impl<N: Nlp> Kernel<N> {
         let along = [envelope, dot(gradient, &dx)];
         let rounding = EXACT * gradient.iter().map(|value| value.abs()).sum::<f64>() * largest(&dx);
         let objective = self.objective(direction, along, [sizes(gradient, &dx), rounding])?;
-        let at = self.at();
-        let margins = at.margins(Changes {
+        let margins = self.conditions.margins(Changes {
             x: &dx,
             y: &dy,
             slopes: &slopes,
             constraints: &values,
             direction,
         });
-        let words = |of| at.words(of);
+        let words = |of| self.conditions.words(of);
         let range = Range::new(&margins, words);
         let weak = Range::ends_at_once(&margins, WEAK).map(words).collect();
         let scale = self.conditions.scale;
@@ -406,12 +336,12 @@ impl<N: Nlp> Kernel<N> {
     /// The linear system is not solved exactly.
     pub fn adjoint(&mut self, outcome: &Outcome) -> Result<Adjoint, NoSensitivity> {
         let x = self.conditions.point();
-        let mut of_x = vec![0.0; self.columns.len()];
+        let mut of_x = vec![0.0; self.conditions.columns.len()];
         for &(i, factor) in &outcome.variables {
             of_x[i] += factor;
         }
         self.conditions.squares.of_changes(&x, &mut of_x);
-        let mut of_y = vec![0.0; self.rows.len()];
+        let mut of_y = vec![0.0; self.conditions.rows.len()];
         for &(i, factor) in &outcome.multipliers {
             of_y[i] += factor / self.conditions.scale;
         }
@@ -442,9 +372,9 @@ impl<N: Nlp> Kernel<N> {
     /// Bounds that are reached without a multiplier, or nearly so, and are left or reached along one of the directions: derivatives by these hold to one
     /// side alone. None where the change of the optimum along each direction would tell.
     pub fn one_sided(&self, directions: &[Direction]) -> Option<Vec<String>> {
-        let mut weak = vec![None; self.columns.len()];
+        let mut weak = vec![None; self.conditions.columns.len()];
         for margin in self.margins().iter().filter(|one| one.distance < WEAK) {
-            let Of::MultiplierOfVariable(i) = margin.of else {
+            let Of::Variable(i, None) = margin.of else {
                 return None;
             };
             weak[i] = Some(Vec::new());
@@ -461,7 +391,7 @@ impl<N: Nlp> Kernel<N> {
         let weak = weak.iter().enumerate();
         let weak = weak.filter_map(|(i, row)| row.as_ref().map(|row| (i, row)));
         let moved = weak.filter(|(i, row)| is_moved(*i, row));
-        let words = |i: usize| self.at().words(Of::MultiplierOfVariable(i));
+        let words = |i: usize| self.conditions.words(Of::Variable(i, None));
         Some(moved.map(|(i, _)| words(i)).collect())
     }
 
@@ -469,23 +399,20 @@ impl<N: Nlp> Kernel<N> {
     /// zero the Lagrangian has slopes of others that are zero too.
     fn slopes_by_given(&self, rows: &mut [Option<Vec<(usize, f64)>>]) -> Option<()> {
         let conditions = &self.conditions;
-        for (&row, &col, value) in entries(&conditions.jacobian, &conditions.jacobian_values) {
-            let place = self.rows[row as usize];
-            let holds = place.is_reached() || place == Place::Equation;
-            if holds && *value != 0.0 && rows[col as usize].is_some() {
+        for (row, col, value) in conditions.jacobian.with(&conditions.jacobian_values) {
+            if conditions.rows[row].holds() && value != 0.0 && rows[col].is_some() {
                 return None;
             }
         }
-        for (&row, &col, value) in entries(&conditions.hessian, &conditions.hessian_values) {
-            let (row, col) = (row as usize, col as usize);
+        for (row, col, value) in conditions.hessian.with(&conditions.hessian_values) {
             let both = [(row, col), (col, row)];
             let count = if row == col { 1 } else { 2 };
             for (of, by) in both.into_iter().take(count) {
-                if let Some(list) = rows[of].as_mut().filter(|_| *value != 0.0) {
-                    if self.columns[by] == Place::Free {
+                if let Some(list) = rows[of].as_mut().filter(|_| value != 0.0) {
+                    if conditions.columns[by] == Place::Free {
                         return None;
                     }
-                    list.push((by, *value));
+                    list.push((by, value));
                 }
             }
         }
@@ -497,7 +424,7 @@ impl<N: Nlp> Kernel<N> {
     /// # Errors
     /// The linear system is not solved exactly, or both ways to a derivative differ.
     pub fn objectives(&mut self, directions: &[Direction]) -> Result<Vec<f64>, NoSensitivity> {
-        let no_rows = vec![0.0; self.rows.len()];
+        let no_rows = vec![0.0; self.conditions.rows.len()];
         let of = self.solved(self.conditions.gradient.clone(), no_rows)?;
         let derivative = |direction: &Direction| {
             let change = self.change(direction);
@@ -516,11 +443,11 @@ impl<N: Nlp> Kernel<N> {
     fn rounding(&self, of: &Adjoint, change: &Change) -> f64 {
         let conditions = &self.conditions;
         let unknown = largest(&of.slopes).max(largest(&of.rows));
-        let given = |i: &u32| change.given[*i as usize].abs();
-        let curved = entries(&conditions.hessian, &conditions.hessian_values)
-            .map(|(row, col, value)| value.abs() * (given(row) + given(col)));
-        let linear = entries(&conditions.jacobian, &conditions.jacobian_values)
-            .map(|(_, col, value)| value.abs() * given(col));
+        let given = |i: usize| change.given[i].abs();
+        let curved = conditions.hessian.with(&conditions.hessian_values);
+        let curved = curved.map(|(row, col, value)| value.abs() * (given(row) + given(col)));
+        let linear = conditions.jacobian.with(&conditions.jacobian_values);
+        let linear = linear.map(|(_, col, value)| value.abs() * given(col));
         let direct = change.slopes.iter().chain(&change.rows);
         let sum = curved.chain(linear).sum::<f64>() + direct.map(|value| value.abs()).sum::<f64>();
         EXACT * unknown * sum

@@ -10,13 +10,11 @@ use crate::nlp::Nlp;
 use crate::sensitivity::conditions::{Conditions, Direction, Place, Side};
 use nalgebra::Vector3;
 
-/// A bound, or its multiplier, that ends a range.
+/// A bound of this side that ends a range, or, without one, the multiplier of that which is reached.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Of {
-    Variable(usize, Side),
-    Constraint(usize, Side),
-    MultiplierOfVariable(usize),
-    MultiplierOfConstraint(usize),
+    Variable(usize, Option<Side>),
+    Constraint(usize, Option<Side>),
 }
 
 /// Derivatives along a direction.
@@ -31,111 +29,103 @@ pub(super) struct Changes<'a> {
     pub(super) direction: &'a Direction,
 }
 
-/// An optimum: its conditions, the places of variables and constraints, and `∇f + Jᵀy`.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct At<'a, N> {
-    pub(super) conditions: &'a Conditions<N>,
-    pub(super) columns: &'a [Place],
-    pub(super) rows: &'a [Place],
-    pub(super) slopes: &'a [f64],
-}
-
 const SIDES: [(Side, f64); 2] = [(Side::Lower, 1.0), (Side::Upper, -1.0)];
 
-impl<N: Nlp> At<'_, N> {
-    /// All margins of an optimum with their derivatives.
-    pub(super) fn margins(&self, changes: Changes<'_>) -> Vec<Margin<Of>> {
-        let mut margins = self.of_variables(changes);
-        self.add_constraints(changes, &mut margins);
-        margins
-    }
+/// A variable or a constraint with its multiplier, and their derivatives along a direction.
+struct Placed {
+    place: Place,
+    value: f64,
+    rate: f64,
+    multiplier: f64,
+    of_multiplier: f64,
+}
 
-    fn of_variables(&self, changes: Changes<'_>) -> Vec<Margin<Of>> {
-        let conditions = self.conditions;
+impl Placed {
+    /// Adds its distances from bounds, which move, or the size of its multiplier.
+    fn add(
+        &self,
+        bounds: impl Fn(Side) -> [f64; 2],
+        of: impl Fn(Option<Side>) -> Of,
+        margins: &mut Vec<Margin>,
+    ) {
+        match self.place {
+            Place::Free => {
+                let of_side = |(side, sign)| {
+                    let [bound, moved] = bounds(side);
+                    bound.is_finite().then(|| Margin {
+                        distance: sign * (self.value - bound),
+                        rate: sign * (self.rate - moved),
+                        of: of(Some(side)),
+                    })
+                };
+                margins.extend(SIDES.into_iter().filter_map(of_side));
+            }
+            Place::Lower | Place::Upper => margins.push(Margin {
+                distance: self.place.sign() * self.multiplier,
+                rate: self.place.sign() * self.of_multiplier,
+                of: of(None),
+            }),
+            Place::Equation | Place::Held => {}
+        }
+    }
+}
+
+impl<N: Nlp> Conditions<N> {
+    /// All margins of an optimum with their derivatives.
+    pub(super) fn margins(&self, changes: Changes<'_>) -> Vec<Margin> {
+        let mut margins = Vec::new();
         let mut slopes = changes.slopes.to_vec();
-        conditions.add_curved(changes.x, &mut slopes);
-        conditions.add_transposed(changes.y, &mut slopes);
+        self.add_curved(changes.x, &mut slopes);
+        self.add_transposed(changes.y, &mut slopes);
         let mut moved = [vec![0.0; self.columns.len()], vec![0.0; self.columns.len()]];
         for &(i, side, value) in &changes.direction.bounds {
-            let given = side.of(conditions.given_bounds())[i];
-            moved[side as usize][i] += conditions.squares.rate(i, given) * value;
+            let given = side.of(self.program().variables())[i];
+            moved[side as usize][i] += self.squares.rate(i, given) * value;
         }
-        let mut margins = Vec::new();
-        for (i, place) in self.columns.iter().enumerate() {
-            match place {
-                Place::Free => {
-                    for (side, sign) in SIDES {
-                        let bound = side.of(&conditions.bounds)[i];
-                        if !bound.is_finite() {
-                            continue;
-                        }
-                        let of_bound = moved[side as usize][i];
-                        margins.push(Margin {
-                            distance: sign * (conditions.x[i] - bound),
-                            rate: sign * (changes.x[i] - of_bound),
-                            of: Of::Variable(i, side),
-                        });
-                    }
-                }
-                Place::Lower | Place::Upper => margins.push(Margin {
-                    distance: -place.sign() * self.slopes[i],
-                    rate: -place.sign() * slopes[i],
-                    of: Of::MultiplierOfVariable(i),
-                }),
-                Place::Equation | Place::Held => {}
-            }
+        for (i, &place) in self.columns.iter().enumerate() {
+            let variable = Placed {
+                place,
+                value: self.x[i],
+                rate: changes.x[i],
+                multiplier: -self.slopes[i],
+                of_multiplier: -slopes[i],
+            };
+            let bounds = |side: Side| [side.of(&self.bounds)[i], moved[side as usize][i]];
+            variable.add(bounds, |side| Of::Variable(i, side), &mut margins);
+        }
+        let mut constraints = changes.constraints.to_vec();
+        self.add_times(changes.x, &mut constraints);
+        let given = &changes.direction.constraint_bounds;
+        for (i, &place) in self.rows.iter().enumerate() {
+            let constraint = Placed {
+                place,
+                value: self.g[i],
+                rate: constraints[i],
+                multiplier: self.y[i],
+                of_multiplier: changes.y[i],
+            };
+            let bounds = |side: Side| [side.of(&self.row_bounds)[i], moved_by(given, i, side)];
+            constraint.add(bounds, |side| Of::Constraint(i, side), &mut margins);
         }
         margins
-    }
-
-    fn add_constraints(&self, changes: Changes<'_>, margins: &mut Vec<Margin<Of>>) {
-        let conditions = self.conditions;
-        let mut constraints = changes.constraints.to_vec();
-        conditions.add_times(changes.x, &mut constraints);
-        for (i, place) in self.rows.iter().enumerate() {
-            match place {
-                Place::Free => {
-                    for (side, sign) in SIDES {
-                        let bound = side.of(&conditions.row_bounds)[i];
-                        let of_bound = moved(&changes.direction.constraint_bounds, i, side);
-                        if bound.is_finite() {
-                            margins.push(Margin {
-                                distance: sign * (conditions.g[i] - bound),
-                                rate: sign * (constraints[i] - of_bound),
-                                of: Of::Constraint(i, side),
-                            });
-                        }
-                    }
-                }
-                Place::Lower | Place::Upper => margins.push(Margin {
-                    distance: place.sign() * conditions.y[i],
-                    rate: place.sign() * changes.y[i],
-                    of: Of::MultiplierOfConstraint(i),
-                }),
-                Place::Equation | Place::Held => {}
-            }
-        }
     }
 
     /// The bound of a margin in words.
     pub(super) fn words(&self, of: Of) -> String {
-        let side = |side: Side| match side {
-            Side::Lower => "lower",
-            Side::Upper => "upper",
+        let (name, side) = match of {
+            Of::Variable(i, side) => (self.program().variable_name(i), side),
+            Of::Constraint(i, side) => (self.program().constraint_name(i), side),
         };
-        let of_variable = |i: usize| self.conditions.variable_name(i);
-        let of_constraint = |i: usize| self.conditions.constraint_name(i);
-        match of {
-            Of::Variable(i, at) => format!("{} reaches its {} bound", of_variable(i), side(at)),
-            Of::Constraint(i, at) => format!("{} reaches its {} bound", of_constraint(i), side(at)),
-            Of::MultiplierOfVariable(i) => format!("{} leaves its bound", of_variable(i)),
-            Of::MultiplierOfConstraint(i) => format!("{} leaves its bound", of_constraint(i)),
+        match side {
+            Some(Side::Lower) => format!("{name} reaches its lower bound"),
+            Some(Side::Upper) => format!("{name} reaches its upper bound"),
+            None => format!("{name} leaves its bound"),
         }
     }
 }
 
 /// Change of a bound.
-fn moved(list: &[(usize, Side, f64)], i: usize, side: Side) -> f64 {
+fn moved_by(list: &[(usize, Side, f64)], i: usize, side: Side) -> f64 {
     let of = list.iter().filter(|one| (one.0, one.1) == (i, side));
     of.map(|one| one.2).sum()
 }
@@ -203,21 +193,21 @@ const ROUNDING: f64 = 1e-9;
 /// Multiple of a value beyond which none is asked whether it has a meaning.
 const FAR: f64 = 100.0;
 
-/// A distance with its derivative, and a number by which its words are found.
+/// A distance from a bound, or the size of a multiplier, with its derivative.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Margin<M> {
+pub(super) struct Margin {
     pub(super) distance: f64,
     pub(super) rate: f64,
-    pub(super) of: M,
+    pub(super) of: Of,
 }
 
 impl Range {
     /// The range of these margins.
-    pub(super) fn new<M: Copy>(margins: &[Margin<M>], words: impl Fn(M) -> String) -> Self {
+    pub(super) fn new(margins: &[Margin], words: impl Fn(Of) -> String) -> Self {
         let least = least_rate(margins);
         let end = |sign: f64| {
             let falling = margins.iter().filter(|one| sign * one.rate < -least);
-            let change = |one: &Margin<M>| one.distance.max(0.0) / one.rate.abs();
+            let change = |one: &Margin| one.distance.max(0.0) / one.rate.abs();
             let first = falling.min_by(|a, b| change(a).total_cmp(&change(b)));
             End {
                 change: sign * first.map_or(f64::INFINITY, change),
@@ -255,18 +245,15 @@ impl Range {
     }
 
     /// Margins that a change ends at once, to either side.
-    pub(super) fn ends_at_once<M: Copy>(
-        margins: &[Margin<M>],
-        distance: f64,
-    ) -> impl Iterator<Item = M> {
+    pub(super) fn ends_at_once(margins: &[Margin], distance: f64) -> impl Iterator<Item = Of> {
         let least = least_rate(margins);
-        let is_at_once = move |one: &&Margin<M>| one.distance < distance && one.rate.abs() > least;
+        let is_at_once = move |one: &&Margin| one.distance < distance && one.rate.abs() > least;
         margins.iter().filter(is_at_once).map(|one| one.of)
     }
 }
 
 /// The derivative up to which all are rounding.
-fn least_rate<M>(margins: &[Margin<M>]) -> f64 {
+fn least_rate(margins: &[Margin]) -> f64 {
     let rates = margins.iter().map(|one| one.rate.abs());
     ROUNDING * rates.fold(0.0, f64::max)
 }

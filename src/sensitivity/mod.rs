@@ -25,7 +25,7 @@ mod optimum;
 mod with_parameters;
 
 pub use check::{NoSensitivity, check};
-pub(crate) use conditions::Matrix;
+pub(crate) use conditions::Saddle;
 pub use conditions::{Direction, Held, Side};
 pub use kernel::{Adjoint, Derivative, Kernel, Outcome};
 pub use margins::{End, Range};

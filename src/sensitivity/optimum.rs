@@ -6,16 +6,17 @@
 //! objective needs none; one for all numbers checks it, and counts as an outcome. Where a bound is reached without a multiplier, the change of the optimum
 //! by each number tells whether its derivatives hold to one side alone: then each number takes one too.
 
-use crate::control::problem::{Control, OutcomeOf, Varied, VariedOf};
+use crate::control::problem::{BoundaryState, Control, OutcomeOf, Varied, VariedOf};
 use crate::control::{Column, Solution, Transcription};
 use crate::model::{Coordinates, Model, Role, System, Time};
 use crate::sensitivity::check::NoSensitivity;
-use crate::sensitivity::conditions::Direction;
+use crate::sensitivity::conditions::{Conditions, Direction, Places};
 use crate::sensitivity::directions::Directions;
 use crate::sensitivity::kernel::{Derivative, Kernel, Outcome};
 use crate::sensitivity::margins::{MarkerSlopes, Range};
-use crate::sensitivity::with_parameters::Opened;
+use crate::sensitivity::with_parameters::{Mapped, Opened};
 use nalgebra::Vector3;
+use std::mem;
 
 /// Derivatives of an optimum by one number of its problem, by the unit inside.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,115 +57,177 @@ pub fn sensitivities(
     control: &Control,
     motion: &Solution,
 ) -> Result<(Vec<Sensitivity>, Vec<Refusal>), NoSensitivity> {
-    with_kernel(
-        system,
-        control,
-        motion,
-        |opened, kernel, directions, rows| {
-            let instants = opened.initial.discrete.z.iter();
-            let markers = instants.map(|z| MarkerSlopes::new(&opened.model, z));
-            let markers: Vec<MarkerSlopes> = markers.collect();
-            let (mut list, mut refused) = (Vec::new(), Vec::new());
-            for (varied, direction) in opened.control.varied.iter().zip(directions) {
-                let found = direction.as_ref().map_err(NoSensitivity::clone);
-                match found.and_then(|direction| kernel.along(direction)) {
-                    Ok(derivative) => {
-                        let at = (opened, kernel.program(), rows);
-                        list.push(sensitivity(varied, (&derivative, &markers), at));
-                    }
-                    Err(reason) => refused.push((varied.name.clone(), reason)),
-                }
-            }
-            Ok((list, refused))
-        },
-    )
-}
-
-/// Hands on the opened problem of an optimum, its kernel, the directions of the numbers that it names, and the rows of the solved program.
-pub(super) fn with_kernel<T>(
-    system: &System,
-    control: &Control,
-    motion: &Solution,
-    go_on: impl FnOnce(
-        &Opened,
-        &mut Kernel<Transcription<'_>>,
-        &[Result<Direction, NoSensitivity>],
-        &[usize],
-    ) -> Result<T, NoSensitivity>,
-) -> Result<T, NoSensitivity> {
     let opened = Opened::new(system, control, motion)?;
-    let program = opened.program()?;
-    let mapped = opened.map(&program)?;
-    let point = (&*mapped.x, &mapped.multipliers);
-    let places = Some(mapped.places);
-    let mut kernel = Kernel::with_places(program, point, &mapped.held, places)?;
-    let directions = {
-        let point = kernel.point();
-        let at = (kernel.program(), &mapped.held, &point[..]);
-        let directions = Directions::new(&opened, at, &control.start)?;
-        let all = opened.control.varied.iter();
-        all.map(|varied| directions.of(varied)).collect::<Vec<_>>()
-    };
-    go_on(&opened, &mut kernel, &directions, &mapped.rows)
-}
-
-fn sensitivity(
-    varied: &Varied,
-    (derivative, markers): (&Derivative, &[MarkerSlopes]),
-    (opened, program, rows): (&Opened, &Transcription<'_>, &[usize]),
-) -> Sensitivity {
-    let model = &opened.model;
-    let intervals = program.intervals();
-    let mut coordinates = vec![vec![0.0; model.coordinate_count()]; intervals + 1];
-    let mut voltages = vec![vec![0.0; model.sources.len()]; intervals];
-    let (mut parameters, mut duration) = (vec![0.0; opened.sought], 0.0);
-    let sought = model.variables.range(Role::Parameter).take(opened.sought);
-    let columns = program.unknowns().columns.iter().zip(&derivative.variables);
-    for (number, (column, change)) in columns.enumerate() {
-        let value = change * program.column_scale(number);
-        match *column {
-            Column::Instant { k, i } if k <= intervals && i < model.coordinate_count() => {
-                coordinates[k][i] = value;
-            }
-            Column::Interval { k, s } if k < intervals => {
-                if let Some(source) = model.variables.of(Time::Interval)[s].source {
-                    voltages[k][source] = value;
-                }
-            }
-            Column::Parameter { s } => {
-                let place = sought.clone().position(|one| one == s);
-                place
-                    .into_iter()
-                    .for_each(|place| parameters[place] = value);
-            }
-            Column::Horizon => duration = value * intervals as f64,
-            _ => {}
+    let mut of = Differentiated::new(&opened, &control.start)?;
+    let instants = opened.initial.discrete.z.iter();
+    let markers = instants.map(|z| MarkerSlopes::new(&opened.model, z));
+    let markers: Vec<MarkerSlopes> = markers.collect();
+    let (mut list, mut refused) = (Vec::new(), Vec::new());
+    for (varied, direction) in opened
+        .control
+        .varied
+        .iter()
+        .zip(mem::take(&mut of.directions))
+    {
+        match direction.and_then(|direction| of.kernel.along(&direction)) {
+            Ok(derivative) => list.push(of.sensitivity(varied, derivative, &markers)),
+            Err(reason) => refused.push((varied.name.clone(), reason)),
         }
     }
-    Sensitivity {
-        objective: derivative.objective,
-        joints: joints(model, &coordinates),
-        markers: match is_place(varied) {
-            true => Vec::new(),
-            false => {
-                let instants = markers.iter().zip(&coordinates);
-                instants.map(|(slopes, row)| slopes.along(row)).collect()
+    Ok((list, refused))
+}
+
+/// An optimum of an opened problem that is differentiated.
+struct Differentiated<'a> {
+    opened: &'a Opened,
+    kernel: Kernel<Transcription<'a>>,
+    /// Directions of the numbers that the problem names.
+    directions: Vec<Result<Direction, NoSensitivity>>,
+    /// Rows of the solved program.
+    rows: Vec<usize>,
+}
+
+impl<'a> Differentiated<'a> {
+    /// That of a problem with a start.
+    fn new(opened: &'a Opened, start: &BoundaryState) -> Result<Self, NoSensitivity> {
+        let program = opened.program()?;
+        let Mapped {
+            x,
+            multipliers,
+            places,
+            is_new,
+            squares,
+            rows,
+        } = opened.map(&program)?;
+        let (of_squares, places) = (Some(&squares[..]), Places::Known(places));
+        let conditions = Conditions::new(program, &x, &multipliers, of_squares, places);
+        let kernel = Kernel::of(conditions)?;
+        let directions = Directions::new(opened, &kernel, &is_new, &squares, start)?;
+        let all = opened.control.varied.iter();
+        Ok(Self {
+            directions: all.map(|varied| directions.of(varied)).collect(),
+            opened,
+            kernel,
+            rows,
+        })
+    }
+
+    fn sensitivity(
+        &self,
+        varied: &Varied,
+        derivative: Derivative,
+        markers: &[MarkerSlopes],
+    ) -> Sensitivity {
+        let (model, program) = (&self.opened.model, self.kernel.program());
+        let intervals = program.intervals();
+        let mut coordinates = vec![vec![0.0; model.coordinate_count()]; intervals + 1];
+        let mut voltages = vec![vec![0.0; model.sources.len()]; intervals];
+        let (mut parameters, mut duration) = (vec![0.0; self.opened.sought], 0.0);
+        let first = model.variables.range(Role::Parameter).start;
+        let columns = program.unknowns().columns.iter().zip(&derivative.variables);
+        for (number, (column, change)) in columns.enumerate() {
+            let value = change * program.column_scale(number);
+            match *column {
+                Column::Instant { k, i } if k <= intervals && i < model.coordinate_count() => {
+                    coordinates[k][i] = value;
+                }
+                Column::Interval { k, s } if k < intervals => {
+                    if let Some(source) = model.variables.of(Time::Interval)[s].source {
+                        voltages[k][source] = value;
+                    }
+                }
+                Column::Parameter { s } => {
+                    let sought = parameters.get_mut(s - first);
+                    sought.into_iter().for_each(|sought| *sought = value);
+                }
+                Column::Horizon => duration = value * intervals as f64,
+                _ => {}
             }
-        },
-        multipliers: rows
-            .iter()
-            .map(|&row| derivative.multipliers[row] * program.row_scale(row))
-            .collect(),
-        varied: varied.clone(),
-        range: derivative
-            .range
-            .clone()
-            .while_true(varied.value, |value| has_meaning(varied, value)),
-        weak: derivative.weak.clone(),
-        duration,
-        parameters,
-        voltages,
-        coordinates,
+        }
+        let of_instants = markers.iter().zip(&coordinates);
+        let of_instants = of_instants.map(|(slopes, row)| slopes.along(row));
+        let multiplier = |&row: &usize| derivative.multipliers[row] * program.row_scale(row);
+        let has_meaning = |value: f64| has_meaning(varied, value);
+        Sensitivity {
+            objective: derivative.objective,
+            joints: joints(model, &coordinates),
+            markers: of_instants.filter(|_| !is_place(varied)).collect(),
+            multipliers: self.rows.iter().map(multiplier).collect(),
+            varied: varied.clone(),
+            range: derivative.range.while_true(varied.value, has_meaning),
+            weak: derivative.weak,
+            duration,
+            parameters,
+            voltages,
+            coordinates,
+        }
+    }
+
+    /// An outcome as factors of columns and rows.
+    fn outcome(&self, of: &OutcomeOf) -> Result<Outcome, NoSensitivity> {
+        let (opened, program) = (self.opened, self.kernel.program());
+        let model = &opened.model;
+        let refused = |what: &str| Err(NoSensitivity::refused(what));
+        let (count, h) = (program.intervals(), opened.initial.h);
+        let instant = |time: f64| ((time / h).round() as usize).min(count);
+        let mut out = Outcome::default();
+        let (k, coordinates) = match *of {
+            OutcomeOf::Multiplier(row) => {
+                let Some(&row) = self.rows.get(row) else {
+                    return refused("the program has no such equation or limit");
+                };
+                out.multipliers.push((row, program.row_scale(row)));
+                return Ok(out);
+            }
+            OutcomeOf::Joint { joint, time } => {
+                let reading = model.joint_readings.get(joint);
+                let coordinate = reading.and_then(|one| one.coordinate);
+                let is_one = model.coordinates == Coordinates::Reduced;
+                match coordinate.filter(|_| is_one) {
+                    Some(c) => (instant(time), vec![(c, 1.0)]),
+                    None => return refused("a joint is an outcome in reduced coordinates alone"),
+                }
+            }
+            OutcomeOf::Marker { marker, axis, time } => {
+                if let Some(place) = opened.control.varied.iter().find(|one| is_place(one)) {
+                    let Varied { name, .. } = place;
+                    return refused(&format!("places of markers depend on {name} by themselves"));
+                }
+                if marker >= model.markers.len() || axis > 2 {
+                    return refused("the system has no such marker");
+                }
+                let k = instant(time);
+                let z = &opened.initial.discrete.z[k];
+                let slopes = MarkerSlopes::new(model, z);
+                (k, slopes.of(marker, axis).to_vec())
+            }
+            _ => (0, Vec::new()),
+        };
+        let parameters = model.variables.range(Role::Parameter);
+        let columns = program.unknowns().columns.iter().enumerate();
+        for (number, column) in columns {
+            let factor = match (*column, of) {
+                (Column::Horizon, OutcomeOf::Duration) => program.intervals() as f64,
+                (Column::Parameter { s }, OutcomeOf::Parameter(place)) => {
+                    f64::from(u8::from(parameters.start + place == s))
+                }
+                (Column::Interval { k, s }, OutcomeOf::Input { source, time }) => {
+                    let own = model.variables.of(Time::Interval)[s].source;
+                    let interval = ((time / h + SNAP) as usize).min(count - 1);
+                    f64::from(u8::from(k == interval && own == Some(*source)))
+                }
+                (Column::Instant { k: at, i }, _) if at == k => {
+                    let own = coordinates.iter().find(|(c, _)| *c == i);
+                    own.map_or(0.0, |(_, factor)| *factor)
+                }
+                _ => 0.0,
+            };
+            if factor != 0.0 {
+                let scale = program.column_scale(number);
+                out.variables.push((number, factor * scale));
+            }
+        }
+        Ok(out)
     }
 }
 
@@ -228,26 +291,18 @@ pub fn gradients(
     motion: &Solution,
     outcomes: &[OutcomeOf],
 ) -> Result<Gradients, NoSensitivity> {
-    with_kernel(
-        system,
-        control,
-        motion,
-        |opened, kernel, directions, rows| {
-            let of = |one: &OutcomeOf| outcome(one, (opened, kernel.program(), rows));
-            let list = outcomes.iter().map(of).collect::<Result<Vec<_>, _>>()?;
-            let directions = directions.iter().cloned().collect::<Result<Vec<_>, _>>()?;
-            let directions = &directions[..];
-            let backward = list.len() + 1;
-            let one_sided = match backward < directions.len() {
-                true => kernel.one_sided(directions),
-                false => None,
-            };
-            match one_sided {
-                Some(one_sided) => by_outcomes(kernel, directions, &list, one_sided),
-                None => by_numbers(kernel, directions, &list),
-            }
-        },
-    )
+    let opened = Opened::new(system, control, motion)?;
+    let mut of = Differentiated::new(&opened, &control.start)?;
+    let list = outcomes.iter().map(|one| of.outcome(one));
+    let list = list.collect::<Result<Vec<_>, _>>()?;
+    let directions = mem::take(&mut of.directions).into_iter();
+    let directions = &directions.collect::<Result<Vec<_>, _>>()?[..];
+    let kernel = &mut of.kernel;
+    let is_backward = list.len() + 1 < directions.len();
+    match is_backward.then(|| kernel.one_sided(directions)).flatten() {
+        Some(one_sided) => by_outcomes(kernel, directions, &list, one_sided),
+        None => by_numbers(kernel, directions, &list),
+    }
 }
 
 /// One solution for each outcome.
@@ -293,75 +348,6 @@ fn by_numbers(
         let new = derivative.weak.into_iter();
         let new: Vec<String> = new.filter(|one| !out.one_sided.contains(one)).collect();
         out.one_sided.extend(new);
-    }
-    Ok(out)
-}
-
-/// An outcome as factors of columns and rows.
-fn outcome(
-    of: &OutcomeOf,
-    (opened, program, rows): (&Opened, &Transcription<'_>, &[usize]),
-) -> Result<Outcome, NoSensitivity> {
-    let model = &opened.model;
-    let refused = |what: &str| Err(NoSensitivity::Refused(what.to_owned()));
-    let (count, h) = (program.intervals(), opened.initial.h);
-    let instant = |time: f64| ((time / h).round() as usize).min(count);
-    let mut out = Outcome::default();
-    let (k, coordinates) = match *of {
-        OutcomeOf::Multiplier(row) => {
-            let Some(&row) = rows.get(row) else {
-                return refused("the program has no such equation or limit");
-            };
-            out.multipliers.push((row, program.row_scale(row)));
-            return Ok(out);
-        }
-        OutcomeOf::Joint { joint, time } => {
-            let reading = model.joint_readings.get(joint);
-            let coordinate = reading.and_then(|one| one.coordinate);
-            let is_one = model.coordinates == Coordinates::Reduced;
-            match coordinate.filter(|_| is_one) {
-                Some(c) => (instant(time), vec![(c, 1.0)]),
-                None => return refused("a joint is an outcome in reduced coordinates alone"),
-            }
-        }
-        OutcomeOf::Marker { marker, axis, time } => {
-            if let Some(place) = opened.control.varied.iter().find(|one| is_place(one)) {
-                let Varied { name, .. } = place;
-                return refused(&format!("places of markers depend on {name} by themselves"));
-            }
-            if marker >= model.markers.len() || axis > 2 {
-                return refused("the system has no such marker");
-            }
-            let k = instant(time);
-            let z = &opened.initial.discrete.z[k];
-            let slopes = MarkerSlopes::new(model, z);
-            (k, slopes.of(marker, axis).to_vec())
-        }
-        _ => (0, Vec::new()),
-    };
-    let parameters = model.variables.range(Role::Parameter);
-    let columns = program.unknowns().columns.iter().enumerate();
-    for (number, column) in columns {
-        let factor = match (*column, of) {
-            (Column::Horizon, OutcomeOf::Duration) => program.intervals() as f64,
-            (Column::Parameter { s }, OutcomeOf::Parameter(place)) => {
-                f64::from(u8::from(parameters.start + place == s))
-            }
-            (Column::Interval { k, s }, OutcomeOf::Input { source, time }) => {
-                let own = model.variables.of(Time::Interval)[s].source;
-                let interval = ((time / h + SNAP) as usize).min(count - 1);
-                f64::from(u8::from(k == interval && own == Some(*source)))
-            }
-            (Column::Instant { k: at, i }, _) if at == k => {
-                let own = coordinates.iter().find(|(c, _)| *c == i);
-                own.map_or(0.0, |(_, factor)| *factor)
-            }
-            _ => 0.0,
-        };
-        if factor != 0.0 {
-            let scale = program.column_scale(number);
-            out.variables.push((number, factor * scale));
-        }
     }
     Ok(out)
 }

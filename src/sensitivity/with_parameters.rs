@@ -13,7 +13,10 @@ use crate::sensitivity::conditions::{Held, Place};
 use crate::sensitivity::kernel::Kernel;
 
 /// A state of rest with its voltages.
-type AtRest = (Equilibrium, Vec<f64>);
+pub(super) struct AtRest {
+    pub(super) state: Equilibrium,
+    pub(super) voltages: Vec<f64>,
+}
 
 /// An optimum with all that its program with more columns is made of.
 pub(super) struct Opened {
@@ -49,10 +52,13 @@ struct Approached {
 pub(super) struct Mapped {
     /// The optimum.
     pub(super) x: Vec<f64>,
-    pub(super) held: Held,
     pub(super) multipliers: Multipliers,
     /// Places of columns and rows.
     pub(super) places: [Vec<Place>; 2],
+    /// True for each column that the solved program lacks.
+    pub(super) is_new: Vec<bool>,
+    /// Columns that enter by their squares alone.
+    pub(super) squares: Vec<usize>,
     /// Row of each row of the solved program.
     pub(super) rows: Vec<usize>,
 }
@@ -72,10 +78,10 @@ impl Opened {
         };
         let h0 = control.duration.first() / control.intervals as f64;
         let (model, boundary) =
-            BoundaryConditions::resolve(system, control, h0).map_err(refused)?;
+            BoundaryConditions::resolve(system, control, h0).map_err(NoSensitivity::refused)?;
         if boundary.sought_rest != [false; 2] {
             let reason = "a state of rest depends on a free parameter, which is not offered";
-            return Err(NoSensitivity::Refused(reason.to_owned()));
+            return Err(NoSensitivity::refused(reason));
         }
         let solved = Outline::new(&model, &boundary, control);
         let at = approached(&model, &boundary, control, motion)?;
@@ -85,10 +91,10 @@ impl Opened {
         let sought = control.parameters.len();
         control.parameters.extend(constants.collect::<Vec<_>>());
         let resolved = BoundaryConditions::resolve_held(system, &control, h0);
-        let (model, mut boundary) = resolved.map_err(refused)?;
+        let (model, mut boundary) = resolved.map_err(NoSensitivity::refused)?;
         if counts != (model.coordinate_count(), model.action.map.unknowns()) {
             let reason = "with these constants as variables other parts of the system move";
-            return Err(NoSensitivity::Refused(reason.to_owned()));
+            return Err(NoSensitivity::refused(reason));
         }
         let rests = rests(&model, &boundary, &control)?;
         let initial = guess(&model, &boundary, &control, h0, Some(motion));
@@ -96,18 +102,14 @@ impl Opened {
             control.start = BoundaryState::Free;
             boundary.goal.coordinates.fill(None);
         }
-        if control
-            .varied
-            .iter()
-            .any(|one| one.of == VariedOf::Duration)
+        let mut varied = control.varied.iter();
+        if varied.any(|one| one.of == VariedOf::Duration)
+            && let Duration::Given(given) = control.duration
         {
-            control.duration = match control.duration {
-                Duration::Given(given) => Duration::Free {
-                    min: given,
-                    max: given,
-                    guess: given,
-                },
-                free => free,
+            control.duration = Duration::Free {
+                min: given,
+                max: given,
+                guess: given,
             };
         }
         Ok(Self {
@@ -126,7 +128,7 @@ impl Opened {
     pub(super) fn program(&self) -> Result<Transcription<'_>, NoSensitivity> {
         let (model, boundary) = (&self.model, &self.boundary);
         let mut program = Transcription::of_any(model, boundary, &self.control, &self.initial)
-            .map_err(refused)?;
+            .map_err(NoSensitivity::refused)?;
         if self.sought == 0 {
             program.hold_parameters();
         }
@@ -144,21 +146,16 @@ impl Opened {
             places: [of_columns, of_rows],
             squares,
         } = &self.at;
+        let counts = [all.columns.len(), all.rows.len()];
         let mut out = Mapped {
             x: program.encode(&self.initial.discrete, self.initial.h),
-            held: Held {
-                variables: vec![true; all.columns.len()],
-                constraints: vec![true; all.rows.len()],
-                squares: Some(Vec::new()),
-            },
-            multipliers: Multipliers {
-                constraints: vec![0.0; all.rows.len()],
-                lower: vec![0.0; all.columns.len()],
-                upper: vec![0.0; all.columns.len()],
-            },
-            places: [&all.columns.len(), &all.rows.len()].map(|&n| vec![Place::Held; n]),
+            multipliers: Multipliers::default(),
+            places: counts.map(|count| vec![Place::Held; count]),
+            is_new: vec![true; counts[0]],
+            squares: Vec::new(),
             rows: Vec::new(),
         };
+        out.multipliers.reset(counts[0], counts[1]);
         let mut places = all.columns.iter().enumerate();
         for (number, column) in columns.iter().enumerate() {
             let column = self.shifted(*column);
@@ -166,13 +163,10 @@ impl Opened {
             let (place, _) = place.ok_or_else(missing)?;
             let scale = program.column_scale(place);
             out.x[place] = values[number] / scale;
-            out.held.variables[place] = false;
+            out.is_new[place] = false;
             out.places[0][place] = of_columns[number];
             if squares.contains(&number) {
-                out.held
-                    .squares
-                    .iter_mut()
-                    .for_each(|list| list.push(place));
+                out.squares.push(place);
             }
             out.multipliers.lower[place] = lower[number] * scale;
             out.multipliers.upper[place] = upper[number] * scale;
@@ -182,7 +176,6 @@ impl Opened {
             let is_row = |one: &Row| self.is_same_row(row, one, program);
             let place = places.find(|(_, one)| is_row(one));
             let (place, _) = place.ok_or_else(|| self.unknown_row(row))?;
-            out.held.constraints[place] = false;
             out.places[1][place] = of_rows[number];
             out.multipliers.constraints[place] = multipliers[number] / program.row_scale(place);
             out.rows.push(place);
@@ -230,22 +223,17 @@ impl Opened {
 
     fn unknown_row(&self, row: &Row) -> NoSensitivity {
         let of = match *row {
-            Row::Limit { limit, .. } => format!(
-                "{:?} reads one of the constants",
-                self.solved.limits[limit].name
-            ),
-            _ => "an equation reads one of the constants".to_owned(),
+            Row::Limit { limit, .. } => format!("{:?}", self.solved.limits[limit].name),
+            _ => "an equation".to_owned(),
         };
-        NoSensitivity::Refused(format!("{of}, which is not offered"))
+        NoSensitivity::refused(format!(
+            "{of} reads one of the constants, which is not offered"
+        ))
     }
 }
 
-fn refused(error: crate::control::BoundaryError) -> NoSensitivity {
-    NoSensitivity::Refused(error.to_string())
-}
-
 fn missing() -> NoSensitivity {
-    NoSensitivity::Refused("the optimum has no multipliers of this problem".to_owned())
+    NoSensitivity::refused("the optimum has no multipliers of this problem")
 }
 
 /// The optimum of the solved program: where its conditions hold with the bounds that the solution has reached.
@@ -257,12 +245,10 @@ fn approached(
 ) -> Result<Approached, NoSensitivity> {
     let h0 = control.duration.first() / control.intervals as f64;
     let initial = guess(model, boundary, control, h0, Some(motion));
-    let program = Transcription::of_any(model, boundary, control, &initial).map_err(refused)?;
+    let program = Transcription::of_any(model, boundary, control, &initial)
+        .map_err(NoSensitivity::refused)?;
     let costates = motion.costates.as_ref().ok_or_else(missing)?;
-    let [columns, rows] = [
-        program.variables().lower.len(),
-        program.constraints().lower.len(),
-    ];
+    let (columns, rows) = (program.variables().count(), program.constraints().count());
     let counts = [&costates.rows, &costates.lower, &costates.upper].map(Vec::len);
     if counts != [rows, columns, columns] {
         return Err(missing());
@@ -277,18 +263,17 @@ fn approached(
         lower: of_columns(&costates.lower),
         upper: of_columns(&costates.upper),
     };
-    let by_squares = control.objective.rate == 0.0 && control.objective.energies.is_empty();
-    let squares = match by_squares {
-        true => program.squares(),
-        false => Vec::new(),
-    };
+    let mut squares = program.squares();
+    if control.objective.rate != 0.0 || !control.objective.energies.is_empty() {
+        squares.clear();
+    }
     let held = Held {
         variables: vec![false; columns],
         constraints: vec![false; rows],
         squares: Some(squares.clone()),
     };
     let x = program.encode(&initial.discrete, initial.h);
-    let kernel = Kernel::new(program, (&x, &multipliers), &held)?;
+    let kernel = Kernel::new(program, &x, &multipliers, &held)?;
     let (program, point) = (kernel.program(), kernel.point());
     let multipliers = kernel.multipliers().into_iter().enumerate();
     Ok(Approached {
@@ -299,7 +284,7 @@ fn approached(
             .map(|(i, v)| v * program.column_scale(i))
             .collect(),
         bounds: [costates.lower.clone(), costates.upper.clone()],
-        places: kernel.places().map(<[Place]>::to_vec),
+        places: [&kernel.conditions.columns, &kernel.conditions.rows].map(Vec::clone),
         squares,
     })
 }
@@ -337,16 +322,20 @@ fn rests(
     boundary: &BoundaryConditions,
     control: &Control,
 ) -> Result<[Option<AtRest>; 2], NoSensitivity> {
+    let at_rest = |state: Equilibrium, voltages: &[f64]| AtRest {
+        state,
+        voltages: voltages.to_vec(),
+    };
     let start = match &control.start {
         BoundaryState::RestAtVoltages(voltages, _) if control.goal != BoundaryState::Periodic => {
-            let rest = rest_at(model, voltages, ("start", 0.0)).map_err(refused)?;
-            Some((rest, voltages.clone()))
+            let state = rest_at(model, voltages, ("start", 0.0)).map_err(NoSensitivity::refused)?;
+            Some(at_rest(state, voltages))
         }
         _ => None,
     };
     let goal = match (&control.goal, &boundary.goal.rest) {
-        (BoundaryState::RestAtVoltages(voltages, _), Some(rest)) => {
-            Some((rest.clone(), voltages.clone()))
+        (BoundaryState::RestAtVoltages(voltages, _), Some(state)) => {
+            Some(at_rest(state.clone(), voltages))
         }
         _ => None,
     };

@@ -107,8 +107,8 @@ impl WholeProgram {
             weights: None,
             variables: solution.x.len(),
             constraints: solution.constraints.len(),
-            jacobian_nonzeros: program.jacobian_structure().rows.len(),
-            hessian_nonzeros: program.hessian_structure().rows.len(),
+            jacobian_nonzeros: program.jacobian_structure().count(),
+            hessian_nonzeros: program.hessian_structure().count(),
             gap,
             wide: None,
         }
@@ -291,7 +291,7 @@ pub fn active(
         }
     }
     let bounds = program.constraints().clone();
-    let mut values = vec![0.0; bounds.lower.len()];
+    let mut values = vec![0.0; bounds.count()];
     program.constraint(x, &mut values);
     for (r, row) in program.unknowns().rows.iter().enumerate() {
         let Row::Limit { limit, .. } = *row else {
@@ -460,7 +460,7 @@ pub fn violations(
     count: usize,
 ) -> Vec<Violation> {
     let bounds = program.constraints().clone();
-    let mut g = vec![0.0; bounds.lower.len()];
+    let mut g = vec![0.0; bounds.count()];
     program.constraint(x, &mut g);
     let excess = |row: usize| bounds.excess(row, g[row]);
     let mut rows: Vec<usize> = (0..g.len()).filter(|&r| excess(r) > tolerance).collect();

@@ -20,7 +20,7 @@ use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt::{Iteration, Options, Reached, Solver, SolverResult, Start, StartingPoint};
 use crate::model::Model;
 use crate::nlp::joined::{Joined, SharedVariable};
-use crate::nlp::{Bounds, Multipliers, Nlp, Status};
+use crate::nlp::{Bounds, Multipliers, Nlp, Status, slopes};
 use crate::stop;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, solved};
@@ -398,14 +398,8 @@ fn is_feasible(program: &impl Nlp, solution: &SolverResult, tolerance: f64) -> b
 /// A bound of what the objective of a solution lies above its least value, to first order.
 pub(crate) fn bound(program: &mut impl Nlp, solution: &SolverResult) -> f64 {
     let SolverResult { x, costates, .. } = solution;
-    let mut slopes = vec![0.0; x.len()];
-    program.gradient(x, &mut slopes);
-    let entries = program.jacobian_structure();
-    let mut values = vec![0.0; entries.rows.len()];
-    program.jacobian(x, &mut values);
-    for ((&row, &col), value) in entries.rows.iter().zip(&entries.cols).zip(&values) {
-        slopes[col as usize] += value * costates.constraints[row as usize];
-    }
+    let jacobian = program.jacobian_structure();
+    let slopes = slopes(program, &jacobian, 1.0, x, &costates.constraints);
     let Bounds { lower, upper } = program.variables();
     // Newton's step of a search direction that is too small is this part of a variable and its scale.
     let step = |x: f64| match solution.status {

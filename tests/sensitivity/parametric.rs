@@ -96,7 +96,7 @@ fn held() -> Held {
 #[test]
 fn the_example_of_sipopt_is_met() {
     let (x, y) = solved([5.0, 1.0]);
-    let mut kernel = Kernel::new(Parametric::new([5.0, 1.0]), (&x, &y), &held()).unwrap();
+    let mut kernel = Kernel::new(Parametric::new([5.0, 1.0]), &x, &y, &held()).unwrap();
     let at = kernel.point();
     let close = |a: f64, b: f64| (a - b).abs() < 1e-6;
     // Table of the paper: the optimum at p = (5, 1).
@@ -128,7 +128,7 @@ fn the_example_of_sipopt_is_met() {
 #[test]
 fn derivatives_are_those_of_optima_found_anew() {
     let (x, y) = solved([5.0, 1.0]);
-    let mut kernel = Kernel::new(Parametric::new([5.0, 1.0]), (&x, &y), &held()).unwrap();
+    let mut kernel = Kernel::new(Parametric::new([5.0, 1.0]), &x, &y, &held()).unwrap();
     let step = 1e-4;
     for p in 0..2 {
         let found = kernel
@@ -165,7 +165,7 @@ fn derivatives_are_those_of_optima_found_anew() {
 #[test]
 fn a_bound_that_is_reached_holds_and_moves() {
     let (x, y) = solved([4.0, 1.0]);
-    let mut kernel = Kernel::new(Parametric::new([4.0, 1.0]), (&x, &y), &held()).unwrap();
+    let mut kernel = Kernel::new(Parametric::new([4.0, 1.0]), &x, &y, &held()).unwrap();
     assert_eq!(kernel.point()[2], 0.0);
     let by_goal = Direction {
         held: vec![(3, 1.0)],
@@ -194,14 +194,14 @@ fn what_is_no_strict_optimum_has_no_sensitivities() {
     // A point beside the optimum moves there.
     let mut beside = x.clone();
     beside[0] += 1e-3;
-    let kernel = Kernel::new(Parametric::new([5.0, 1.0]), (&beside, &y), &held()).unwrap();
+    let kernel = Kernel::new(Parametric::new([5.0, 1.0]), &beside, &y, &held()).unwrap();
     assert!(kernel.moved() > 5e-4 && (kernel.point()[0] - x[0]).abs() < 1e-8);
     // Of which both equations are left out the objective alone is left: the origin, from which the multipliers are far.
     let open = Held {
         constraints: vec![true, true],
         ..held()
     };
-    let mut kernel = Kernel::new(Parametric::new([5.0, 1.0]), (&x, &y), &open).unwrap();
+    let mut kernel = Kernel::new(Parametric::new([5.0, 1.0]), &x, &y, &open).unwrap();
     assert!(kernel.point()[..3].iter().all(|x| x.abs() < 1e-9));
     // All three rest at their bounds without multipliers; a push at one moves it to one side alone.
     let slope = Direction {
@@ -222,7 +222,7 @@ fn what_is_no_strict_optimum_has_no_sensitivities() {
         variables: vec![true, true, false, true, true],
         ..held()
     };
-    let error = Kernel::new(Parametric::new([5.0, 1.0]), (&x, &y), &all).unwrap_err();
+    let error = Kernel::new(Parametric::new([5.0, 1.0]), &x, &y, &all).unwrap_err();
     assert_eq!(
         error,
         NoSensitivity::Overdetermined {
@@ -254,7 +254,7 @@ fn outcomes_backward_are_those_forward() {
     ];
     for p in [[5.0, 1.0], [4.0, 1.0]] {
         let (x, y) = solved(p);
-        let mut kernel = Kernel::new(Parametric::new(p), (&x, &y), &held()).unwrap();
+        let mut kernel = Kernel::new(Parametric::new(p), &x, &y, &held()).unwrap();
         let outcome = Outcome {
             variables: vec![(0, 1.0), (2, 0.5), (3, 0.25)],
             multipliers: vec![(1, 2.0)],

@@ -101,7 +101,7 @@ impl Transcription<'_> {
         let mut values = vec![0.0; self.structure.hessian.entries.rows.len()];
         let none = vec![0.0; self.layout.unknowns.rows.len()];
         self.hessian(x, 1.0, &none, &mut values);
-        let entries = self.structure.hessian.with(&values);
+        let entries = self.structure.hessian.entries.with(&values);
         let own = entries.filter(|(row, col, _)| row == col);
         own.map(|(_, _, value)| 0.5 * value.abs()).sum()
     }
@@ -110,7 +110,7 @@ impl Transcription<'_> {
     /// by that change alone.
     fn set_limit_scales(&mut self, values: &[f64]) {
         let mut changes = vec![0.0_f64; self.layout.limits.len()];
-        for (row, col, value) in self.structure.jacobian.with(values) {
+        for (row, col, value) in self.structure.jacobian.entries.with(values) {
             if let Row::Limit { limit, .. } = self.layout.unknowns.rows[row] {
                 let change = (value * self.variable_scales[col]).abs();
                 changes[limit] = changes[limit].max(change);
@@ -137,7 +137,7 @@ impl Transcription<'_> {
             variable.role.time() == Time::Horizon
         };
         let mut largest = vec![0.0_f64; self.stride()];
-        for (row, col, value) in self.structure.jacobian.with(values) {
+        for (row, col, value) in self.structure.jacobian.entries.with(values) {
             let (kind, column) = (kind(rows[row], count), columns[col]);
             if let (Some(i), None) = (kind, multiplier(column, self.model))
                 && !is_of_horizon(column)
@@ -153,7 +153,7 @@ impl Transcription<'_> {
         let Numbering { rows, columns, .. } = &self.layout.unknowns;
         let count = self.model.action.map.unknowns();
         let mut largest = vec![0.0_f64; count];
-        for (row, col, value) in self.structure.jacobian.with(values) {
+        for (row, col, value) in self.structure.jacobian.entries.with(values) {
             let of = (kind(rows[row], count), multiplier(columns[col], self.model));
             if let (Some(r), Some(i)) = of {
                 largest[i] = largest[i].max((value * of_kinds[r]).abs());

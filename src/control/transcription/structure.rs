@@ -63,26 +63,14 @@ impl Structure {
 
 impl Matrix {
     fn add(&mut self, row: usize, col: usize, place: usize) {
-        self.entries.rows.push(row as u32);
-        self.entries.cols.push(col as u32);
+        self.entries.push(row, col);
         self.kept.push(Gather { place, scale: 1.0 });
-    }
-
-    /// Row, column and value of each entry.
-    pub(super) fn with<'a>(
-        &'a self,
-        values: &'a [f64],
-    ) -> impl Iterator<Item = (usize, usize, f64)> {
-        let places = self.entries.rows.iter().zip(&self.entries.cols);
-        let entries = places.zip(values);
-        entries.map(|((&row, &col), &value)| (row as usize, col as usize, value))
     }
 
     /// Scales the entries by their rows and columns.
     pub(super) fn scale(&mut self, rows: &[f64], columns: &[f64]) {
-        let places = self.entries.rows.iter().zip(&self.entries.cols);
-        for (kept, (&row, &col)) in self.kept.iter_mut().zip(places) {
-            kept.scale = rows[row as usize] * columns[col as usize];
+        for (kept, (row, col)) in self.kept.iter_mut().zip(self.entries.places()) {
+            kept.scale = rows[row] * columns[col];
         }
     }
 }

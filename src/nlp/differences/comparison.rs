@@ -39,12 +39,12 @@ const AGREE: f64 = 0.25;
 impl Comparison {
     pub(super) fn new(places: &Entries, values: &[f64], terms: Vec<f64>, columns: usize) -> Self {
         let mut by_column = vec![Vec::<(usize, f64)>::new(); columns];
-        for ((&row, &col), &value) in places.rows.iter().zip(&places.cols).zip(values) {
+        for (row, col, value) in places.with(values) {
             assert!(
-                (row as usize) < terms.len(),
+                row < terms.len(),
                 "row {row} of the structure lies outside the matrix"
             );
-            by_column[col as usize].push((row as usize, value));
+            by_column[col].push((row, value));
         }
         for column in &mut by_column {
             column.sort_by_key(|&(row, _)| row);

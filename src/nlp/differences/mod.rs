@@ -75,7 +75,7 @@ pub fn check_along(
     seed: u64,
     mut stop: impl FnMut() -> bool,
 ) -> Report {
-    let (n, m) = (nlp.variables().lower.len(), nlp.constraints().lower.len());
+    let (n, m) = (nlp.variables().count(), nlp.constraints().count());
     assert_eq!(x.len(), n, "one value per variable");
     assert_eq!(sizes.len(), n, "one size per variable");
     let random = &mut Random::new(seed);
@@ -135,7 +135,7 @@ impl Derivatives {
         go_on()?;
         let here = DirectionSample::at(nlp, lagrangian, x);
         go_on()?;
-        let mut hessian = vec![0.0; nlp.hessian_structure().rows.len()];
+        let mut hessian = vec![0.0; nlp.hessian_structure().count()];
         nlp.hessian(x, lagrangian.sigma, &lagrangian.costates, &mut hessian);
         go_on()?;
         let n = x.len();
@@ -208,33 +208,17 @@ impl Lagrangian {
     /// Its gradient, from those of f and g.
     fn gradient(&self, gradient: &[f64], jacobian: &[f64]) -> Vec<f64> {
         let mut sum: Vec<f64> = gradient.iter().map(|value| self.sigma * value).collect();
-        for ((&row, &col), value) in self
-            .jacobian
-            .rows
-            .iter()
-            .zip(&self.jacobian.cols)
-            .zip(jacobian)
-        {
-            sum[col as usize] += self.costates[row as usize] * value;
-        }
+        let y = &self.costates;
+        self.jacobian.add_transposed(jacobian, y, &mut sum);
         sum
     }
 
     /// Sum of the sizes of the terms in each entry of its gradient.
     fn term_sizes(&self, here: &DirectionSample) -> Vec<f64> {
-        let mut sum: Vec<f64> = here
-            .gradient
-            .iter()
-            .map(|value| (self.sigma * value).abs())
-            .collect();
-        for ((&row, &col), value) in self
-            .jacobian
-            .rows
-            .iter()
-            .zip(&self.jacobian.cols)
-            .zip(&here.jacobian)
-        {
-            sum[col as usize] += (self.costates[row as usize] * value).abs();
+        let terms = here.gradient.iter();
+        let mut sum: Vec<f64> = terms.map(|value| (self.sigma * value).abs()).collect();
+        for (row, col, value) in self.jacobian.with(&here.jacobian) {
+            sum[col] += (self.costates[row] * value).abs();
         }
         sum
     }
@@ -256,7 +240,7 @@ impl DirectionSample {
         nlp.gradient(x, &mut gradient);
         let mut constraints = vec![0.0; lagrangian.costates.len()];
         nlp.constraint(x, &mut constraints);
-        let mut jacobian = vec![0.0; lagrangian.jacobian.rows.len()];
+        let mut jacobian = vec![0.0; lagrangian.jacobian.count()];
         nlp.jacobian(x, &mut jacobian);
         let lagrangian = lagrangian.gradient(&gradient, &jacobian);
         Self {

@@ -52,7 +52,7 @@ impl<N: Nlp> Joined<N> {
         );
         let size = |(_, program): &(String, N)| {
             let bounds = [program.variables(), program.constraints()];
-            bounds.map(|bounds| bounds.lower.len())
+            bounds.map(Bounds::count)
         };
         let sizes: Vec<[usize; 2]> = programs.iter().map(size).collect();
         let mut out = Self {
@@ -89,21 +89,19 @@ impl<N: Nlp> Joined<N> {
             }
         };
         let jacobian = program.jacobian_structure();
-        for (entry, (&row, &col)) in jacobian.rows.iter().zip(&jacobian.cols).enumerate() {
-            let (to, factor) = columns[col as usize];
-            self.jacobian.rows.push(rows.start as u32 + row);
-            self.jacobian.cols.push(to as u32);
+        for (entry, (row, col)) in jacobian.places().enumerate() {
+            let (to, factor) = columns[col];
+            self.jacobian.push(rows.start + row, to);
             keep(0, entry, factor);
         }
         let hessian = program.hessian_structure();
-        for (entry, (&row, &col)) in hessian.rows.iter().zip(&hessian.cols).enumerate() {
-            let ((a, by_a), (b, by_b)) = (columns[row as usize], columns[col as usize]);
-            self.hessian.rows.push(a.max(b) as u32);
-            self.hessian.cols.push(a.min(b) as u32);
+        for (entry, (row, col)) in hessian.places().enumerate() {
+            let ((a, by_a), (b, by_b)) = (columns[row], columns[col]);
+            self.hessian.push(a.max(b), a.min(b));
             keep(1, entry, by_a * by_b);
         }
         self.parts.push(Part {
-            entries: [jacobian.rows.len(), hessian.rows.len()],
+            entries: [jacobian.count(), hessian.count()],
             x: vec![f64::NAN; columns.len()],
             gradient: vec![0.0; columns.len()],
             objective: 0.0,
@@ -118,11 +116,7 @@ impl<N: Nlp> Joined<N> {
 
     /// Bounds of all variables; a shared one keeps those of all programs.
     fn joined_variables(&self) -> Bounds {
-        let count = self.places.count;
-        let mut bounds = Bounds {
-            lower: vec![f64::NEG_INFINITY; count],
-            upper: vec![f64::INFINITY; count],
-        };
+        let mut bounds = Bounds::none(self.places.count);
         for part in &self.parts {
             let of = part.program.variables();
             let both = of.lower.iter().zip(&of.upper);
@@ -173,16 +167,13 @@ impl<N: Nlp + Send> Joined<N> {
             scale: self.objective_scale(),
         });
         self.places.count += 1;
-        self.variables.lower.push(f64::NEG_INFINITY);
-        self.variables.upper.push(f64::INFINITY);
+        self.variables.push(f64::NEG_INFINITY, f64::INFINITY);
         for (number, part) in self.parts[..self.counted].iter().enumerate() {
             let own = part.columns.iter().map(|&(to, _)| to);
             for to in own.chain([column]) {
-                self.jacobian.rows.push((first_row + number) as u32);
-                self.jacobian.cols.push(to as u32);
+                self.jacobian.push(first_row + number, to);
             }
-            self.constraints.lower.push(f64::NEG_INFINITY);
-            self.constraints.upper.push(0.0);
+            self.constraints.push(f64::NEG_INFINITY, 0.0);
         }
         self
     }
@@ -300,13 +291,13 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
             Stage::Border => None,
         };
         // A variable that is one of the border in a program is one of that of the whole.
-        let mut is_of_border = vec![false; self.variables.lower.len()];
+        let mut is_of_border = vec![false; self.variables.count()];
         for (part, stages) in self.parts.iter().zip(&of_parts) {
             for (&(to, _), stage) in part.columns.iter().zip(stages) {
                 is_of_border[to] |= *stage == Stage::Border;
             }
         }
-        let mut all = vec![Stage::Border; self.variables.lower.len()];
+        let mut all = vec![Stage::Border; self.variables.count()];
         let mut behind = 0;
         for (part, stages) in self.parts.iter().zip(&of_parts) {
             let mut own = part.columns.iter().zip(stages);
@@ -330,7 +321,7 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
     }
 
     fn squares(&self) -> Vec<usize> {
-        let mut times = vec![0; self.variables.lower.len()];
+        let mut times = vec![0; self.variables.count()];
         for part in &self.parts {
             let squares = part.program.squares().into_iter();
             squares.for_each(|own| times[part.columns[own].0] += 1);

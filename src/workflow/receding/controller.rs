@@ -93,7 +93,7 @@ impl<'h> RecedingHorizon<'h> {
     /// A controller that begins at the start of the motion.
     pub fn new(of: &'h Horizon) -> Self {
         let program = of.program();
-        let columns = program.variables().lower.len();
+        let columns = program.variables().count();
         let width = of.coordinates().len();
         let mut is_held = vec![false; columns];
         let start = &program.layout.coordinates[..width];

@@ -199,7 +199,7 @@ impl Horizon {
             .collect();
         let momenta = self.steered.momenta(&self.model, state);
         program.hold_start(&values, &momenta);
-        let mut x = vec![0.0; program.variables().lower.len()];
+        let mut x = vec![0.0; program.variables().count()];
         program.refer_all(&mut x);
         let start = StartingPoint { x, costates: None };
         let found = solve(&mut program, &start, &Options::default(), &mut |_, _| {

@@ -19,9 +19,8 @@
 //!
 //! The second part of an iteration: what was measured enters the right side, and each variable goes as far as its bounds allow.
 
-use crate::kkt::{Plan, Solver, Unknown};
-use crate::nlp::{Bounds, Entries, Nlp};
-use crate::sensitivity::Matrix;
+use crate::nlp::{Entries, Nlp};
+use crate::sensitivity::Saddle;
 
 /// A point starts no nearer to its bounds than this part of their distance, or of one.
 const INSIDE: f64 = 1e-4;
@@ -46,34 +45,37 @@ pub(super) struct Iteration<N> {
     pub(super) x: Vec<f64>,
     pub(super) y: Vec<f64>,
     pub(super) z: [Vec<f64>; 2],
-    pub(super) bounds: [Vec<f64>; 2],
+    bounds: [Vec<f64>; 2],
     /// Number of variables of the program.
     pub(super) columns: usize,
     /// Slack of each row.
     slacks: Vec<Option<usize>>,
-    /// Unknown of each variable and slack, and of each row; none of what is held.
-    pub(super) unknowns: Vec<Option<usize>>,
-    pub(super) rows: Vec<Option<usize>>,
+    /// The matrix, over all that is not held.
+    saddle: Saddle,
     jacobian: Entries,
-    /// Entries of the Hessian and of the Jacobian in the matrix.
-    kept: [Vec<usize>; 2],
-    /// Entries by held variables: unknown of the row, variable, entry.
-    pub(super) held: [Vec<(usize, usize, usize)>; 2],
+    /// Entries by held variables.
+    held: [Vec<HeldEntry>; 2],
     gradient: Vec<f64>,
     /// Values of the rows where they were evaluated last.
     pub(super) g: Vec<f64>,
-    pub(super) jacobian_values: Vec<f64>,
-    pub(super) hessian_values: Vec<f64>,
+    jacobian_values: Vec<f64>,
+    hessian_values: Vec<f64>,
     zeros: Vec<f64>,
-    values: Vec<f64>,
-    pub(super) right: Vec<f64>,
+    right: Vec<f64>,
     /// Σ of each variable and slack.
     weights: Vec<f64>,
-    pub(super) solution: Vec<f64>,
-    pub(super) step: Vec<f64>,
+    solution: Vec<f64>,
+    step: Vec<f64>,
     /// True if a bound cut the last step of the slack of a limit.
     pub(super) is_cut: bool,
-    pub(super) solver: Solver,
+}
+
+/// An entry of a matrix in the row of an unknown by a held variable.
+#[derive(Clone, Copy, Debug)]
+struct HeldEntry {
+    unknown: usize,
+    variable: usize,
+    entry: usize,
 }
 
 impl<N: Nlp> Iteration<N> {
@@ -82,63 +84,43 @@ impl<N: Nlp> Iteration<N> {
         let [jacobian, hessian] = [program.jacobian_structure(), program.hessian_structure()];
         let columns = x.len();
         let row_bounds = program.constraints();
-        let count = row_bounds.lower.len();
+        let count = row_bounds.count();
         let mut has_unknown = vec![false; count];
-        for (&row, &col) in jacobian.rows.iter().zip(&jacobian.cols) {
-            has_unknown[row as usize] |= !is_held[col as usize];
+        for (row, col) in jacobian.places() {
+            has_unknown[row] |= !is_held[col];
         }
-        let Bounds { lower, upper } = program.variables().clone();
-        let mut bounds = [lower, upper];
+        let mut bounds = program.variables().clone();
         let mut slacks = vec![None; count];
         for row in 0..count {
             let (low, high) = (row_bounds.lower[row], row_bounds.upper[row]);
             if has_unknown[row] && low < high {
-                slacks[row] = Some(bounds[0].len());
-                bounds[0].push(low);
-                bounds[1].push(high);
+                slacks[row] = Some(bounds.count());
+                bounds.push(low, high);
             }
         }
-        let mut order = 0;
-        let mut number = |is_one: bool| {
-            is_one.then(|| {
-                order += 1;
-                order - 1
-            })
-        };
-        let all = bounds[0].len();
-        let unknowns: Vec<_> = (0..all)
-            .map(|i| number(i >= columns || !is_held[i]))
-            .collect();
-        let rows: Vec<_> = has_unknown.iter().map(|one| number(*one)).collect();
-        let kinds = kinds(&program, (&unknowns, &rows), &slacks, columns);
-        let mut matrix = Matrix::default();
-        let kept = [
-            matrix.add(&hessian, (&unknowns, &unknowns)),
-            matrix.add(&jacobian, (&rows, &unknowns)),
-        ];
-        unknowns.iter().flatten().for_each(|&i| matrix.push(i, i));
-        for (row, slack) in slacks.iter().enumerate() {
-            if let (Some(row), Some(slack)) = (rows[row], slack) {
-                matrix.push(row, unknowns[*slack].expect("a slack is no held variable"));
-            }
-        }
-        let plan = Plan::new(order, &matrix.rows, &matrix.cols, kinds.as_deref());
+        let all = bounds.count();
+        let saddle = Saddle::new(
+            [&hessian, &jacobian],
+            (0..all).map(|i| i >= columns || !is_held[i]),
+            has_unknown.into_iter(),
+            Some(&slacks),
+            program.stages().as_deref(),
+        );
+        let order = saddle.order();
         let zeros = |length: usize| vec![0.0; length];
         let mut out = Self {
             held: [
-                held(&hessian, (&unknowns, &unknowns), true),
-                held(&jacobian, (&rows, &unknowns), false),
+                held(&hessian, &saddle.columns, &saddle.columns, true),
+                held(&jacobian, &saddle.rows, &saddle.columns, false),
             ],
-            solver: Solver::new(plan),
             x: x.to_vec(),
             y: zeros(count),
             z: [zeros(all), zeros(all)],
             gradient: zeros(columns),
             g: zeros(count),
-            jacobian_values: zeros(jacobian.rows.len()),
-            hessian_values: zeros(hessian.rows.len()),
+            jacobian_values: zeros(jacobian.count()),
+            hessian_values: zeros(hessian.count()),
             zeros: zeros(count),
-            values: zeros(matrix.rows.len()),
             right: zeros(order),
             solution: zeros(order),
             weights: zeros(all),
@@ -146,13 +128,11 @@ impl<N: Nlp> Iteration<N> {
             is_cut: false,
             program,
             barrier,
-            bounds,
+            bounds: [bounds.lower, bounds.upper],
             columns,
             slacks,
-            unknowns,
-            rows,
+            saddle,
             jacobian,
-            kept,
         };
         out.x.resize(all, 0.0);
         out.begin();
@@ -163,8 +143,7 @@ impl<N: Nlp> Iteration<N> {
     pub(super) fn begin(&mut self) {
         self.y.fill(0.0);
         (0..self.columns).for_each(|i| self.centre(i));
-        self.program
-            .constraint(&self.x[..self.columns], &mut self.g);
+        self.evaluate_rows();
         for row in 0..self.slacks.len() {
             if let Some(slack) = self.slacks[row] {
                 self.x[slack] = self.g[row];
@@ -175,10 +154,21 @@ impl<N: Nlp> Iteration<N> {
 
     /// Puts a variable inside its bounds, with the multipliers of its place.
     pub(super) fn centre(&mut self, i: usize) {
-        if self.unknowns[i].is_some() {
+        if self.is_unknown(i) {
             self.put_inside(i);
-            self.z[0][i] = self.barrier / (self.x[i] - self.bounds[0][i]);
-            self.z[1][i] = self.barrier / (self.bounds[1][i] - self.x[i]);
+            let distances = self.distances(i);
+            self.set_multipliers(i, distances.map(|distance| self.barrier / distance));
+        }
+    }
+
+    fn is_unknown(&self, i: usize) -> bool {
+        self.saddle.columns[i].is_some()
+    }
+
+    /// Sets the multipliers of both bounds.
+    fn set_multipliers(&mut self, i: usize, values: [f64; 2]) {
+        for (z, value) in self.z.iter_mut().zip(values) {
+            z[i] = value;
         }
     }
 
@@ -195,7 +185,7 @@ impl<N: Nlp> Iteration<N> {
     }
 
     /// A multiplier of a bound of variable or slack `i` at a distance, near that of its place.
-    pub(super) fn near(&self, i: usize, z: f64, distance: f64) -> f64 {
+    fn near(&self, i: usize, z: f64, distance: f64) -> f64 {
         let of_place = self.barrier / distance;
         let near = NEAR[usize::from(i >= self.columns)];
         z.clamp(of_place / near, of_place * near)
@@ -209,10 +199,9 @@ impl<N: Nlp> Iteration<N> {
             };
             self.x[slack] = self.g[row];
             self.put_inside(slack);
-            let below = self.x[slack] - self.bounds[0][slack];
-            let above = self.bounds[1][slack] - self.x[slack];
-            self.z[0][slack] = self.near(slack, self.z[0][slack], below);
-            self.z[1][slack] = self.near(slack, self.z[1][slack], above);
+            let distances = self.distances(slack);
+            let near = |side: usize| self.near(slack, self.z[side][slack], distances[side]);
+            self.set_multipliers(slack, [near(0), near(1)]);
         }
     }
 
@@ -238,47 +227,35 @@ impl<N: Nlp> Iteration<N> {
     }
 
     fn factor(&mut self) -> bool {
-        let hessian = self.kept[0].iter().map(|&entry| self.hessian_values[entry]);
-        let jacobian = self.kept[1]
-            .iter()
-            .map(|&entry| self.jacobian_values[entry]);
-        let weights = self.unknowns.iter().zip(&self.weights);
-        let weights = weights.filter_map(|(number, weight)| number.map(|_| *weight));
-        let slacks = self.slacks.iter().flatten().map(|_| -1.0);
-        let all = hessian.chain(jacobian).chain(weights).chain(slacks);
-        self.values
-            .iter_mut()
-            .zip(all)
-            .for_each(|(to, value)| *to = value);
-        let found = self.solver.factor(&self.values);
-        let equations = self.rows.iter().flatten().count();
-        found.zero == 0 && found.negative == equations
+        let (hessian, jacobian) = (&self.hessian_values, &self.jacobian_values);
+        let found = self.saddle.factor(hessian, jacobian, &self.weights);
+        found.zero == 0 && found.negative == self.saddle.equations
     }
 
     /// Residuals of the conditions, with the barrier, as a right side; Σ.
     fn set_right(&mut self) {
         self.right.fill(0.0);
-        for (i, number) in self.unknowns.iter().enumerate() {
-            let Some(number) = *number else { continue };
-            let below = self.x[i] - self.bounds[0][i];
-            let above = self.bounds[1][i] - self.x[i];
+        for i in 0..self.weights.len() {
+            let Some(number) = self.saddle.columns[i] else {
+                continue;
+            };
+            let [below, above] = self.distances(i);
             self.weights[i] = self.z[0][i] / below + self.z[1][i] / above;
             let gradient = self.gradient.get(i).copied().unwrap_or(0.0);
             self.right[number] = -gradient + self.barrier / below - self.barrier / above;
         }
-        let entries = self.jacobian.rows.iter().zip(&self.jacobian.cols);
-        for ((&row, &col), value) in entries.zip(&self.jacobian_values) {
-            if let Some(number) = self.unknowns[col as usize] {
-                self.right[number] -= value * self.y[row as usize];
+        for (row, col, value) in self.jacobian.with(&self.jacobian_values) {
+            if let Some(number) = self.saddle.columns[col] {
+                self.right[number] -= value * self.y[row];
             }
         }
         let target = &self.program.constraints().lower;
-        for (row, number) in self.rows.iter().enumerate() {
+        for (row, number) in self.saddle.rows.iter().enumerate() {
             let Some(number) = *number else { continue };
             self.right[number] = match self.slacks[row] {
                 None => target[row] - self.g[row],
                 Some(slack) => {
-                    let place = self.unknowns[slack].expect("a slack is no held variable");
+                    let place = self.saddle.columns[slack].expect("a slack is no held variable");
                     self.right[place] += self.y[row];
                     self.x[slack] - self.g[row]
                 }
@@ -293,8 +270,8 @@ impl<N: Nlp> Iteration<N> {
             all.fold(0.0, |a: f64, b| if b > a || b.is_nan() { b } else { a })
         };
         Residual {
-            equations: largest(&self.rows),
-            gradient: largest(&self.unknowns),
+            equations: largest(&self.saddle.rows),
+            gradient: largest(&self.saddle.columns),
         }
     }
 
@@ -311,47 +288,25 @@ impl<N: Nlp> Iteration<N> {
 }
 
 /// Entries in the row of an unknown by a held variable; of a symmetric matrix in either triangle.
-pub(super) fn held(
+fn held(
     entries: &Entries,
-    (rows, cols): (&[Option<usize>], &[Option<usize>]),
+    rows: &[Option<usize>],
+    columns: &[Option<usize>],
     is_symmetric: bool,
-) -> Vec<(usize, usize, usize)> {
-    let mut out = Vec::new();
-    for (entry, (&row, &col)) in entries.rows.iter().zip(&entries.cols).enumerate() {
-        let (row, col) = (row as usize, col as usize);
-        match (rows[row], cols[col]) {
-            (Some(number), None) => out.push((number, col, entry)),
-            (None, Some(number)) if is_symmetric => out.push((number, row, entry)),
-            _ => {}
-        }
-    }
-    out
-}
-
-/// Kinds of the unknowns along the horizon.
-pub(super) fn kinds(
-    program: &impl Nlp,
-    (unknowns, rows): (&[Option<usize>], &[Option<usize>]),
-    slacks: &[Option<usize>],
-    columns: usize,
-) -> Option<Vec<Unknown>> {
-    let stages = program.stages()?;
-    let mut kinds = Vec::new();
-    for (i, number) in unknowns.iter().enumerate() {
-        if number.is_some() {
-            let stage = stages.get(i).filter(|_| i < columns);
-            kinds.push(stage.map_or(Unknown::Slack, |&stage| stage.into()));
-        }
-    }
-    for (number, slack) in rows.iter().zip(slacks) {
-        if number.is_some() {
-            kinds.push(match slack {
-                Some(_) => Unknown::Inequality,
-                None => Unknown::Equality,
-            });
-        }
-    }
-    Some(kinds)
+) -> Vec<HeldEntry> {
+    let of = |(entry, (row, col))| {
+        let (unknown, variable) = match (rows[row], columns[col]) {
+            (Some(unknown), None) => (unknown, col),
+            (None, Some(unknown)) if is_symmetric => (unknown, row),
+            _ => return None,
+        };
+        Some(HeldEntry {
+            unknown,
+            variable,
+            entry,
+        })
+    };
+    entries.places().enumerate().filter_map(of).collect()
 }
 
 /// Part of the way to a bound that a step may go.
@@ -372,25 +327,22 @@ impl<N: Nlp> Iteration<N> {
         self.step.fill(0.0);
         changes.iter().for_each(|&(i, value)| self.step[i] = value);
         self.solution.copy_from_slice(&self.right);
-        for (list, values) in self
-            .held
-            .iter()
-            .zip([&self.hessian_values, &self.jacobian_values])
-        {
-            for &(row, variable, entry) in list {
-                self.solution[row] -= values[entry] * self.step[variable];
+        let values = [&self.hessian_values, &self.jacobian_values];
+        for (list, values) in self.held.iter().zip(values) {
+            for of in list {
+                self.solution[of.unknown] -= values[of.entry] * self.step[of.variable];
             }
         }
         for &(row, value) in rows {
-            if let Some(number) = self.rows[row] {
+            if let Some(number) = self.saddle.rows[row] {
                 self.solution[number] -= value;
             }
         }
-        self.solver.solve(&mut self.solution);
+        self.saddle.solver.solve(&mut self.solution);
         if !self.solution.iter().all(|value| value.is_finite()) {
             return false;
         }
-        for (step, number) in self.step.iter_mut().zip(&self.unknowns) {
+        for (step, number) in self.step.iter_mut().zip(&self.saddle.columns) {
             if let Some(number) = *number {
                 *step = self.solution[number];
             }
@@ -412,9 +364,9 @@ impl<N: Nlp> Iteration<N> {
             [primal.min(own[0]), dual.min(own[1])]
         });
         let mut is_cut = false;
-        for i in 0..self.unknowns.len() {
+        for i in 0..self.step.len() {
             let dx = self.step[i];
-            if self.unknowns[i].is_none() {
+            if !self.is_unknown(i) {
                 self.x[i] += dx;
                 continue;
             }
@@ -429,7 +381,7 @@ impl<N: Nlp> Iteration<N> {
             }
             self.x[i] += primal * dx;
         }
-        for (y, number) in self.y.iter_mut().zip(&self.rows) {
+        for (y, number) in self.y.iter_mut().zip(&self.saddle.rows) {
             if let Some(number) = *number {
                 *y += allowed[0] * self.solution[number];
             }
@@ -440,7 +392,7 @@ impl<N: Nlp> Iteration<N> {
     /// Parts of the steps of a variable or slack and of its multipliers that its bounds allow.
     fn allowed(&self, i: usize) -> [f64; 2] {
         let (mut primal, mut dual) = (1.0_f64, 1.0_f64);
-        if self.unknowns[i].is_none() {
+        if !self.is_unknown(i) {
             return [primal, dual];
         }
         let dx = self.step[i];

@@ -84,17 +84,14 @@ impl<'m> Program<'m> {
         of_squares.square(&mut given.lower);
         of_squares.square(&mut given.upper);
         let size = columns + inert;
-        let mut bounds = Bounds {
-            lower: vec![f64::NEG_INFINITY; size],
-            upper: vec![f64::INFINITY; size],
-        };
+        let mut bounds = Bounds::none(size);
         for (column, &own) in own.iter().enumerate() {
             bounds.lower[own] = given.lower[column];
             bounds.upper[own] = given.upper[column];
         }
         let mut out = Self {
             row_bounds: motion.constraints().clone(),
-            counts: [jacobian.rows.len(), hessian.rows.len()],
+            counts: [jacobian.count(), hessian.count()],
             motion: InSquares::new(motion, of_squares, &jacobian, &hessian),
             point: vec![0.0; own.len()],
             reference,
@@ -138,15 +135,11 @@ impl<'m> Program<'m> {
     /// Adds the entries of the momenta at the end, and of the costs.
     fn add_structure(&mut self) {
         for (place, &(row, _)) in self.layout.momenta[1].iter().enumerate() {
-            self.jacobian.rows.push(row as u32);
-            self.jacobian.cols.push((self.columns + place) as u32);
+            self.jacobian.push(row, self.columns + place);
         }
         let (n, last) = (self.layout.width(), self.layout.intervals);
         let column = |k: usize, c: usize| self.layout.coordinates[k * n + c].0;
-        let mut add = |a: usize, b: usize| {
-            self.hessian.rows.push(a.max(b) as u32);
-            self.hessian.cols.push(a.min(b) as u32);
-        };
+        let mut add = |a: usize, b: usize| self.hessian.push(a.max(b), a.min(b));
         for k in 0..last {
             for a in 0..n {
                 (0..=a).for_each(|b| add(column(k, a), column(k, b)));
