@@ -94,10 +94,7 @@ fn solve_task(
     }
     if let [one] = &task.motions[..] {
         sensitivity::check(one.system, one.control).map_err(|(name, reason)| {
-            WorkflowError::Problem {
-                place: format!("control.sensitivity.{name}"),
-                reason,
-            }
+            WorkflowError::problem(format!("control.sensitivity.{name}"), reason)
         })?;
     }
     let HeldGoals {
@@ -185,7 +182,7 @@ fn add_sensitivities(system: &System, control: &Control, result: &mut SolveResul
     }
     let (motion, outcomes) = (&result.optimum.motion, &control.outcomes);
     let found = match (result.optimum.meets_equations(), &outcomes[..]) {
-        (false, _) => Err(NoSensitivity::Refused("no optimum was found".to_owned())),
+        (false, _) => Err(NoSensitivity::refused("no optimum was found")),
         (true, []) => {
             let list = sensitivities(system, control, motion);
             list.map(|(list, refused)| {
@@ -325,9 +322,7 @@ pub(super) fn solve_and_hold<'a>(
             if each.all(|((control, optimum), is_left)| {
                 optimum.is_solved() && (!is_left || is_kept(optimum, control))
             }) {
-                for (new, old) in second.optima.iter_mut().zip(&found.optima) {
-                    new.carried = old.carried;
-                }
+                second.carry(&found);
                 return Ok(HeldGoals {
                     found: second,
                     notes: vec![None; held.len()],

@@ -8,6 +8,7 @@ use crate::model::{Coordinates, Model};
 use crate::nlp::joined::Places;
 use crate::nlp::{Nlp, Status};
 use crate::stop;
+use crate::workflow::accuracy::Accuracy;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::hold_check;
 use crate::workflow::motion::{Iterate, solved};
@@ -30,14 +31,22 @@ const NAMED: usize = 5;
 /// A row that the solver could not make smaller than this does not hold.
 const HOLDS: f64 = 1e-6;
 
-/// Motions that were found by one program.
-pub(crate) struct FoundTogether {
-    /// The motions, each with its part of the result of the solver.
-    pub(crate) optima: Vec<Optimum>,
-    pub(crate) whole: WholeProgram,
+/// Motions that were optimised together, or a single one, and the way to them.
+#[derive(Debug)]
+pub struct Together {
+    /// Each with its part of the result of the solver.
+    pub optima: Vec<Optimum>,
+    /// All of them as one program.
+    pub whole: WholeProgram,
+    /// Iterations on all grids.
+    pub iterations: usize,
+    /// Estimated errors, the greatest of all motions, where an accuracy was wanted of motions that name their intervals.
+    pub accuracy: Option<Accuracy>,
+    /// For each a note on the reason for another grid, or on the lack of a verification.
+    pub notes: Vec<Option<String>>,
 }
 
-impl FoundTogether {
+impl Together {
     /// Returns true if all of them meet the discrete equations.
     pub(crate) fn meets_equations(&self) -> bool {
         self.optima.iter().all(Optimum::meets_equations)
@@ -76,7 +85,7 @@ pub(crate) fn attempt(
     task: &ControlTask<'_>,
     allowed: SolveLimits,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
-) -> Result<FoundTogether, WorkflowError> {
+) -> Result<Together, WorkflowError> {
     let (began, budget) = (Instant::now(), Budget::new(allowed));
     let watch = stop::watch(allowed.seconds);
     phase("building the model, finding start and goal");
@@ -139,7 +148,14 @@ pub(crate) fn attempt(
     if let [only] = &mut optima[..] {
         (only.program.gap, only.program.wide) = (whole.gap, whole.wide.clone());
     }
-    Ok(FoundTogether { optima, whole })
+    let notes = vec![None; optima.len()];
+    Ok(Together {
+        optima,
+        whole,
+        iterations: 0,
+        accuracy: None,
+        notes,
+    })
 }
 
 /// The end of the last solve for one motion.
@@ -167,10 +183,10 @@ impl End {
         let is_solved = solution.status.is_solved();
         let (violated, active) = match is_solved {
             true => (Vec::new(), Vec::new()),
-            false => (
-                violations(program, x, HOLDS, NAMED),
-                active(program, x, model, of.task.control),
-            ),
+            false => {
+                let violated = violations(program, x, HOLDS, NAMED);
+                (violated, active(program, x, model, of.task.control))
+            }
         };
         let last = solution.iterations.last().filter(|_| !is_solved);
         let gap = bound(program, &solution);

@@ -139,13 +139,9 @@ pub(crate) fn horizon(task: &Simulation) -> Result<Option<Horizon>, WorkflowErro
     else {
         return Ok(None);
     };
-    let found = Horizon::solved(ahead);
-    found.map(Some).map_err(|error| {
-        error.at(
-            "simulate.controller.horizon",
-            &format!("{}: ", path.display()),
-        )
-    })
+    let words = format!("{}: ", path.display());
+    let found = Horizon::solved(ahead).map(Some);
+    found.map_err(|error| error.at("simulate.controller.horizon", &words))
 }
 
 impl<'a> Loop<'a> {
@@ -161,34 +157,29 @@ impl<'a> Loop<'a> {
         let Some(controller) = &task.controller else {
             return Ok(None);
         };
-        let kind = if horizon.is_some() {
-            "horizon"
-        } else {
-            "feedback"
-        };
-        let wrong = |reason: String| WorkflowError::Problem {
-            place: format!("simulate.controller.{kind}"),
-            reason: format!("{}: {reason}", controller.path.display()),
+        let kind = horizon.map_or("feedback", |_| "horizon");
+        let wrong = |reason: &str| {
+            let place = format!("simulate.controller.{kind}");
+            WorkflowError::problem(place, format!("{}: {reason}", controller.path.display()))
         };
         if model.coordinates == Coordinates::Redundant {
             let reason = "it measures joint coordinates; expected \"coordinates\": \"reduced\"";
-            return Err(wrong(reason.to_owned()));
+            return Err(wrong(reason));
         }
         let law = horizon.map_or(&*controller.law, Horizon::law);
         if let Some(key) = controller.noise.unread(law) {
             let [found, expected] = Noise::UNREAD;
-            return Err(WorkflowError::Problem {
-                place: format!("simulate.controller.noise.{key}"),
-                reason: format!("found {found}, expected {expected}"),
-            });
+            let place = format!("simulate.controller.noise.{key}");
+            let reason = format!("found {found}, expected {expected}");
+            return Err(WorkflowError::problem(place, reason));
         }
         let end = law.duration() * (1.0 + 1e-9);
         if !law.holds_goal() && task.duration > end {
             let reason = "it does not hold its goal after its end, where this simulation goes on; expected a shorter \"duration\"";
-            return Err(wrong(reason.to_owned()));
+            return Err(wrong(reason));
         }
-        let measured = measured(model, law).map_err(wrong)?;
-        let markers = markers(model, law).map_err(wrong)?;
+        let measured = measured(model, law).map_err(|reason| wrong(&reason))?;
+        let markers = markers(model, law).map_err(|reason| wrong(&reason))?;
         let sources = &model.sources;
         let scalar = |input: &LawInput| {
             let source = sources.iter().position(|source| source.name == input.name);
@@ -235,13 +226,8 @@ impl<'a> Loop<'a> {
         }
         // The first multiple of the sample behind this time.
         state.next = sample * ((time / sample + 1e-6).floor() + 1.0);
-        let rates = rates_of_momentum(
-            self.model,
-            &discrete.z[last],
-            discrete.begun + time,
-            &discrete.momenta[last],
-        );
-        let (law, z) = (self.law, &discrete.z[last]);
+        let (law, z, momentum) = (self.law, &discrete.z[last], &discrete.momenta[last]);
+        let rates = rates_of_momentum(self.model, z, discrete.begun + time, momentum);
         let of_state = |place: usize| {
             let of = &law.measured[place];
             let value = match (self.measured[place], of.is_rate) {
@@ -254,10 +240,8 @@ impl<'a> Loop<'a> {
             };
             (value, self.task.noise.of(of))
         };
-        let instant = self
-            .markers
-            .first()
-            .map(|_| self.model.action.map.placed(z));
+        let first = self.markers.first();
+        let instant = first.map(|_| self.model.action.map.placed(z));
         for place in 0..state.values.len() {
             let reading = law.observer.as_ref().map(|one| &one.readings[place]);
             let (value, noise) = match reading {
@@ -269,12 +253,9 @@ impl<'a> Loop<'a> {
                     (instant.x[vector][axis], self.task.noise.length)
                 }
             };
-            let random = if noise > 0.0 {
-                state.random.normal()
-            } else {
-                0.0
-            };
-            state.values[place] = value + noise * random;
+            let has_noise = noise > 0.0;
+            let random = has_noise.then(|| state.random.normal());
+            state.values[place] = value + noise * random.unwrap_or(0.0);
         }
         state.controller.sample(time, &state.values);
     }
@@ -295,9 +276,7 @@ impl<'a> Loop<'a> {
 fn measured(model: &Model, law: &Law) -> Result<Vec<Option<usize>>, String> {
     let coordinates = model.variables.with(Role::Coordinate);
     let place = |one: &Measured| {
-        let own = coordinates
-            .iter()
-            .position(|variable| variable.name == one.name);
+        let own = coordinates.iter().position(|it| it.name == one.name);
         let own = own.filter(|&i| model.is_length(i) == one.is_length);
         match own {
             None if one.memory.is_none() => Err(format!(

@@ -1,6 +1,7 @@
 //! Errors of tasks.
 
 use std::error::Error as StdError;
+use std::mem;
 
 use thiserror::Error;
 
@@ -50,14 +51,17 @@ pub enum WorkflowError {
 }
 
 impl WorkflowError {
+    /// A problem that asks for something that does not exist, at a path in it.
+    pub(crate) fn problem(place: impl Into<String>, reason: impl Into<String>) -> Self {
+        let (place, reason) = (place.into(), reason.into());
+        Self::Problem { place, reason }
+    }
+
     /// Start or goal of a problem that does not exist; `task` is its key in the file.
     pub(crate) fn boundary(task: &str, error: &BoundaryError) -> Self {
         let (key, reason) = match error {
             BoundaryError::Model(source @ ModelError::OpenLoop { .. }) => {
-                return Self::Problem {
-                    place: "scene.joints".to_owned(),
-                    reason: source.to_string(),
-                };
+                return Self::problem("scene.joints", source.to_string());
             }
             BoundaryError::Model(source) => ("coordinates", source.to_string()),
             BoundaryError::NoEquilibrium {
@@ -112,10 +116,7 @@ impl WorkflowError {
                 ("goal", error.to_string())
             }
         };
-        Self::Problem {
-            place: format!("{task}.{key}"),
-            reason,
-        }
+        Self::problem(format!("{task}.{key}"), reason)
     }
 
     /// The same of one of several motions: its place in the problem, where it has one, is that of the motion.
@@ -124,17 +125,11 @@ impl WorkflowError {
             Some(rest) if !name.is_empty() => format!("control.motions.{name}.{rest}"),
             _ => place,
         };
-        match self {
-            Self::Problem { place, reason } => Self::Problem {
-                place: within(place),
-                reason,
-            },
-            Self::NoEquilibrium { place, reason } => Self::NoEquilibrium {
-                place: within(place),
-                reason,
-            },
-            other => other,
+        let mut of_motion = self;
+        if let Self::Problem { place, .. } | Self::NoEquilibrium { place, .. } = &mut of_motion {
+            *place = within(mem::take(place));
         }
+        of_motion
     }
 
     /// An option or a problem that Ipopt does not take.
@@ -146,9 +141,6 @@ impl WorkflowError {
             }
             IpoptError::ProblemNotCreated { .. } => "control",
         };
-        Self::Problem {
-            place: place.to_owned(),
-            reason: error.to_string(),
-        }
+        Self::problem(place, error.to_string())
     }
 }

@@ -7,13 +7,13 @@
 use crate::control::problem::{Control, ControlTask, Duration};
 use crate::nlp::Status;
 use crate::workflow::accuracy::{
-    Accuracy, AccuracyTarget, Attempt, ErrorSample, OF_CONTROL, VARIABLES, refine,
+    AccuracyTarget, Attempt, ErrorSample, OF_CONTROL, VARIABLES, refine,
 };
-use crate::workflow::attempt::FoundTogether;
+use crate::workflow::attempt::Together;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, discrete_trajectory};
 use crate::workflow::optimise::{displaced, is_infeasible, is_unreached, optimise_task};
-use crate::workflow::optimum::{Budget, Optimum, SolveLimits, WholeProgram};
+use crate::workflow::optimum::{Budget, Optimum, SolveLimits};
 use crate::workflow::remark::phase;
 use std::ops::ControlFlow;
 
@@ -46,21 +46,6 @@ pub struct SolveRequest {
     pub limits: SolveLimits,
 }
 
-/// Motions that were optimised together, or a single one, and the way to them.
-#[derive(Debug)]
-pub struct Together {
-    /// Each with its part of the result of the solver.
-    pub optima: Vec<Optimum>,
-    /// All of them as one program.
-    pub whole: WholeProgram,
-    /// Iterations on all grids.
-    pub iterations: usize,
-    /// Estimated errors, the greatest of all motions, where an accuracy was wanted of motions that name their intervals.
-    pub accuracy: Option<Accuracy>,
-    /// For each a note on the reason for another grid, or on the lack of a verification.
-    pub notes: Vec<Option<String>>,
-}
-
 /// Solves for motions as one program, on their own grids.
 ///
 /// Where an accuracy is wanted of motions that name their intervals, finer grids follow until every error is estimated below it, each with twice the
@@ -78,13 +63,11 @@ pub fn optimise_together(
     let once = task.with_limits_once();
     let task = task.with(once.iter().map(|control| &**control));
     if let (Some(other), [_, ..]) = (task.other_grid(), task.shared_inputs) {
-        return Err(WorkflowError::Problem {
-            place: "control.shared_inputs".to_owned(),
-            reason: format!(
-                "the instants of the motion \"{}\" are other ones",
-                other.name
-            ),
-        });
+        let reason = format!(
+            "the instants of the motion \"{}\" are other ones",
+            other.name
+        );
+        return Err(WorkflowError::problem("control.shared_inputs", reason));
     }
     let are_given = task.motions.iter().all(|one| !one.control.is_refined);
     let mut solves = GridSolves {
@@ -136,16 +119,16 @@ impl GridSolves<'_, '_> {
     fn solve(
         &mut self,
         intervals: &[usize],
-        earlier: Option<&FoundTogether>,
-    ) -> Result<FoundTogether, WorkflowError> {
+        earlier: Option<&Together>,
+    ) -> Result<Together, WorkflowError> {
         self.solve_problems(&self.on(intervals), earlier)
     }
 
     fn solve_problems(
         &mut self,
         controls: &[Control],
-        earlier: Option<&FoundTogether>,
-    ) -> Result<FoundTogether, WorkflowError> {
+        earlier: Option<&Together>,
+    ) -> Result<Together, WorkflowError> {
         let limits = self.budget.left_of_limits();
         let mut task = self.task.with(controls);
         for (k, motion) in task.motions.iter_mut().enumerate() {
@@ -159,7 +142,7 @@ impl GridSolves<'_, '_> {
     }
 
     /// Solves on the own grids; several motions from displaced guesses too, where that leads nowhere.
-    fn first(&mut self) -> Result<FoundTogether, WorkflowError> {
+    fn first(&mut self) -> Result<Together, WorkflowError> {
         let controls = self.on(&self.times(1));
         let found = self.solve_problems(&controls, None)?;
         let is_unreached = controls.len() > 1 && is_unreached(&found.optima[0].solution);
@@ -172,19 +155,16 @@ impl GridSolves<'_, '_> {
             .map(|(control, first)| displaced(control, first))
             .collect();
         let second = self.solve_problems(&displaced, None);
-        let second = second.ok().filter(FoundTogether::meets_equations);
+        let second = second.ok().filter(Together::meets_equations);
         Ok(second.unwrap_or(found))
     }
 
     /// The end of the solves.
-    fn end(&self, found: FoundTogether, notes: Vec<Option<String>>) -> Together {
-        let FoundTogether { optima, whole } = found;
+    fn end(&self, found: Together, notes: Vec<Option<String>>) -> Together {
         Together {
-            optima,
-            whole,
             iterations: self.iterations,
-            accuracy: None,
             notes,
+            ..found
         }
     }
 
@@ -201,9 +181,9 @@ impl GridSolves<'_, '_> {
             && let Ok(found) = self.solve(&self.times(FINER), None)
             && found.is_solved()
         {
+            let finer = FINER * own;
             let note = format!(
-                "on {own} intervals no motion keeps goal and limits; on {} intervals this one does",
-                FINER * own
+                "on {own} intervals no motion keeps goal and limits; on {finer} intervals this one does"
             );
             return Ok(self.end(found, vec![Some(note)]));
         }
@@ -291,11 +271,7 @@ impl GridSolves<'_, '_> {
     }
 
     /// Solves on finer grids, from the motions before, then from the guesses; the reason where that is not done.
-    fn refine(
-        &mut self,
-        before: &FoundTogether,
-        intervals: &[usize],
-    ) -> Result<FoundTogether, &'static str> {
+    fn refine(&mut self, before: &Together, intervals: &[usize]) -> Result<Together, &'static str> {
         let grown = before.optima.iter().zip(intervals);
         let grown = grown.map(|(one, &n)| n as f64 / one.motion.intervals() as f64);
         let variables = before.whole.variables as f64 * grown.fold(1.0, f64::max);
@@ -305,7 +281,7 @@ impl GridSolves<'_, '_> {
         if variables > VARIABLES as f64 {
             return Err("a finer grid is too large");
         }
-        let is_found = |found: &FoundTogether| found.meets_equations();
+        let is_found = |found: &Together| found.meets_equations();
         let mut next = self.solve(intervals, Some(before)).ok().filter(is_found);
         if next.is_none() && !self.budget.is_over() {
             next = self.solve(intervals, None).ok().filter(is_found);
@@ -363,16 +339,15 @@ impl GridSolves<'_, '_> {
                 optimum.stopped = self.budget.stopped();
             }
         }
-        let notes = vec![None; found.optima.len()];
         Ok(Together {
             iterations: refined.iterations,
             accuracy: Some(refined.accuracy),
-            ..self.end(found, notes)
+            ..found
         })
     }
 
     /// A solve as one of the grids that are compared.
-    fn compared(&self, run: FoundTogether) -> Attempt<FoundTogether> {
+    fn compared(&self, run: Together) -> Attempt<Together> {
         // What is not reproduced may be on a finer grid.
         let is_complete = run.meets_equations();
         let open = run.optima.iter().find(|one| !one.is_solved());
@@ -397,7 +372,7 @@ impl GridSolves<'_, '_> {
 }
 
 /// Iterations of a solve.
-fn iterations(found: &FoundTogether) -> usize {
+fn iterations(found: &Together) -> usize {
     let solution = &found.optima[0].solution;
     solution.iterations.len().saturating_sub(1)
 }
@@ -436,16 +411,13 @@ fn is_confirmed(optimum: &Optimum, accuracy: f64) -> bool {
 
 /// Returns the factor of the intervals of the next grid.
 fn factor(optimum: &Optimum, accuracy: f64) -> f64 {
-    let tested = optimum
-        .resimulation
-        .as_ref()
-        .filter(|tested| tested.is_confirmed);
-    match tested.and_then(|tested| tested.error) {
-        Some(error) => (error / (AIMED * accuracy))
-            .sqrt()
-            .clamp(FACTORS[0], FACTORS[1]),
-        None => UNKNOWN,
-    }
+    let tested = optimum.resimulation.as_ref();
+    let error = tested.filter(|tested| tested.is_confirmed);
+    let error = error.and_then(|tested| tested.error);
+    error.map_or(UNKNOWN, |error| {
+        let factor = (error / (AIMED * accuracy)).sqrt();
+        factor.clamp(FACTORS[0], FACTORS[1])
+    })
 }
 
 /// Returns the values of an optimum that are compared, without its objective.

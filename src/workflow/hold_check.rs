@@ -5,7 +5,6 @@ use crate::control::{BoundaryConditions, Rests, Solution};
 use crate::dynamics::trajectory::{Trajectory, by_source};
 use crate::dynamics::{DiscreteTrajectory, Equilibrium, Start, StepError, simulate};
 use crate::math::significant;
-use crate::model::system::Source;
 use crate::model::{Model, joint_unit};
 use crate::stop;
 use crate::workflow::error::WorkflowError;
@@ -27,12 +26,8 @@ pub(crate) fn check(
     if control.hold == Hold::Reported || control.seeks_hold() {
         return Ok(());
     }
-    let refused = |key: &str, reason: String| {
-        Err(WorkflowError::Problem {
-            place: format!("control.{key}"),
-            reason,
-        })
-    };
+    let refused =
+        |key: &str, reason: String| Err(WorkflowError::problem(format!("control.{key}"), reason));
     if boundary.rest[1].is_none() {
         let reason = "the final state must be held, but the goal names no voltages that hold it: take \"rest_at_voltages\", \
                       \"markers\" with \"hold\", or either of \"markers\" and \"joint_angles\" with \"hold\": \"find\"";
@@ -42,10 +37,10 @@ pub(crate) fn check(
         return refused(&format!("goal.hold.{name}"), reason);
     }
     match unstable(boundary) {
-        Some(reason) => refused(
-            "goal",
-            format!("the final state must be held, but {reason}"),
-        ),
+        Some(reason) => {
+            let reason = format!("the final state must be held, but {reason}");
+            refused("goal", reason)
+        }
         None => Ok(()),
     }
 }
@@ -116,13 +111,9 @@ fn unstable(boundary: &BoundaryConditions) -> Option<String> {
     if count == 0 {
         return None;
     }
-    let noun = if count == 1 {
-        "direction"
-    } else {
-        "directions"
-    };
+    let plural = if count == 1 { "" } else { "s" };
     Some(format!(
-        "it is an unstable equilibrium, in {count} {noun}{softest}"
+        "it is an unstable equilibrium, in {count} direction{plural}{softest}"
     ))
 }
 
@@ -168,19 +159,16 @@ fn named(model: &Model, boundary: &BoundaryConditions) -> Option<Vec<f64>> {
 
 /// Names the inputs that were found and hold the goal, without those that are hardly any.
 pub(crate) fn note_found(model: &Model, held: &[f64]) -> String {
-    let counted = |(source, value): (&Source, &f64)| {
-        let (unit, size) = source.kind.counted();
-        (source.name.clone(), value / size, unit)
+    let all = || {
+        let all = model.sources.iter().zip(held);
+        all.map(|(source, value)| {
+            let (unit, size) = source.kind.counted();
+            (&source.name, value / size, unit)
+        })
     };
-    let all: Vec<_> = model.sources.iter().zip(held).map(counted).collect();
-    let largest = all
-        .iter()
-        .fold(0.0, |most: f64, (_, value, _)| most.max(value.abs()));
-    let named = all
-        .iter()
-        .filter(|(_, value, _)| value.abs() > HARDLY * largest);
-    let named =
-        named.map(|(name, value, unit)| format!("{name} {} {unit}", significant(*value, 4)));
+    let largest = all().fold(0.0, |most: f64, (_, value, _)| most.max(value.abs()));
+    let named = all().filter(|(_, value, _)| value.abs() > HARDLY * largest);
+    let named = named.map(|(name, value, unit)| format!("{name} {} {unit}", significant(value, 4)));
     let named: Vec<String> = named.collect();
     match named.is_empty() {
         true => "the goal was found to be held without any voltage or load".to_owned(),
@@ -320,18 +308,11 @@ impl Afterwards {
         if self.is_held {
             return None;
         }
-        let mut far: Vec<String> = self
-            .goal
-            .iter()
-            .take(TOLD)
-            .map(Departure::message)
-            .collect();
-        far.push(format!("the system moves by {}", self.drift));
-        far.extend(
-            self.failure
-                .iter()
-                .map(|failure| format!("the motion ends early: {failure}")),
-        );
+        let far = self.goal.iter().take(TOLD).map(Departure::message);
+        let early = self.failure.iter();
+        let early = early.map(|failure| format!("the motion ends early: {failure}"));
+        let moves = format!("the system moves by {}", self.drift);
+        let far: Vec<String> = far.chain([moves]).chain(early).collect();
         let advice = match can_be_sought {
             false => "\"rest_at_voltages\", or \"markers\" with \"hold\"",
             true => {

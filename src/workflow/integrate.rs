@@ -217,10 +217,8 @@ fn has_solver(model: &Model, solving: Solving) -> Result<(), WorkflowError> {
     };
     let expected = "\"auto\", \"faer\" or \"mumps\"; multigrid needs the midpoint rule and elastic blocks, beside which nothing moves";
     found.map_or(Ok(()), |found| {
-        Err(WorkflowError::Problem {
-            place: "simulate.linear_solver".to_owned(),
-            reason: format!("found multigrid where {found}, expected {expected}"),
-        })
+        let reason = format!("found multigrid where {found}, expected {expected}");
+        Err(WorkflowError::problem("simulate.linear_solver", reason))
     })
 }
 

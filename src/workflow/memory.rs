@@ -129,14 +129,11 @@ pub(crate) fn of_program(model: &Model, intervals: usize) -> Result<(), Workflow
 
 fn enough(place: &str, what: &str, bytes: f64) -> Result<(), WorkflowError> {
     match available() {
-        Some(available) if bytes > available => Err(WorkflowError::Problem {
-            place: place.to_owned(),
-            reason: format!(
-                "{what} needs {} of memory or more, and {} are free",
-                readable(bytes),
-                readable(available)
-            ),
-        }),
+        Some(available) if bytes > available => {
+            let [needed, free] = [bytes, available].map(readable);
+            let reason = format!("{what} needs {needed} of memory or more, and {free} are free");
+            Err(WorkflowError::problem(place, reason))
+        }
         _ => Ok(()),
     }
 }

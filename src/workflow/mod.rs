@@ -37,9 +37,10 @@ pub(crate) mod tolerance;
 pub(crate) mod tracking;
 pub(crate) mod warnings;
 
+pub use attempt::Together;
 pub use effects::{EffectCounts, Plan, coupling, effect_counts};
 pub use error::WorkflowError;
-pub use grids::{ACCURACY, SolveRequest, Together, optimise_together};
+pub use grids::{ACCURACY, SolveRequest, optimise_together};
 pub use hold_check::{Afterwards, Departure, Repeated};
 pub use integrate::{Simulated, grid, integrate, integrate_on, integrate_to};
 pub use motion::{Iterate, IterateMotions, solved, trajectory};

@@ -10,7 +10,7 @@ use crate::math::Signal;
 use crate::model::{Model, Role, System};
 use crate::nlp::Status;
 use crate::stop;
-use crate::workflow::attempt::{FoundTogether, attempt};
+use crate::workflow::attempt::{Together, attempt};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Budget, Optimum, Restarted, Shortest, SolveLimits};
@@ -43,15 +43,19 @@ pub(super) fn optimise_task(
     task: &ControlTask<'_>,
     allowed: SolveLimits,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
-) -> Result<FoundTogether, WorkflowError> {
+) -> Result<Together, WorkflowError> {
     let budget = Budget::new(allowed);
     let mut found = attempt(task, allowed, observer)?;
     if let [motion] = task.motions[..]
         && is_unreached(&found.optima[0].solution)
     {
-        let first = found.optima.remove(0);
-        let second = second_starts(Further { motion, budget }, first, observer);
-        found.optima.push(second);
+        let starts = SecondStarts {
+            motion,
+            budget,
+            observer,
+            found: found.optima.remove(0),
+        };
+        found.optima.push(starts.solve());
     }
     Ok(found)
 }
@@ -61,81 +65,196 @@ const SHORTEST: &str = "the shortest motion";
 const DISPLACED: &str = "a second, displaced initial guess";
 const SLOW: &str = "a slow motion";
 
-/// Solves a control problem again from other starts, where the first one led nowhere: from the shortest motion, where that is as short as is
-/// asked for, and, unless it is longer, from a displaced guess; then it looks for a motion as slow as the slowest mode. The first solve, with
-/// the iterations of all, where none leads anywhere.
-fn second_starts(
-    further: Further<'_>,
-    first: Optimum,
-    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
-) -> Optimum {
-    let mut found = others(&further, first, observer);
-    if !found.meets_equations() {
-        found = advised(&further, found, observer);
-    }
-    if !found.meets_equations() {
-        found.stopped = further.budget.stopped();
-    }
-    found
+/// Other starts of a control problem whose first one led nowhere.
+struct SecondStarts<'a, 'o> {
+    motion: MotionTask<'a>,
+    budget: Budget,
+    observer: &'o mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
+    /// The first solve, with the iterations of all, or that which has found a motion.
+    found: Optimum,
 }
 
-/// Solves from the shortest motion, and from a displaced guess.
-fn others(
-    further: &Further<'_>,
-    mut found: Optimum,
-    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
-) -> Optimum {
-    let MotionTask {
-        control, earlier, ..
-    } = further.motion;
-    if further.budget.is_over() {
-        return found;
-    }
-    phase("looking for the shortest motion");
-    let (said, motion) = shortest(further, &mut found);
-    found.shortest = said;
-    if let (Some(motion), false) = (motion, further.budget.is_over()) {
-        phase("solving from the shortest motion");
-        let start = (control, Some(&motion));
-        found = replaced(further, found, start, SHORTEST, observer);
-    }
-    let is_done = found.meets_equations() || matches!(said, Shortest::Longer(_));
-    if !is_done && earlier.is_none() && !further.budget.is_over() {
-        phase(DISPLACED);
-        let displaced = displaced(control, &found);
-        found = replaced(further, found, (&displaced, None), DISPLACED, observer);
-    }
-    found
-}
-
-/// Looks for what the slowest mode says of a problem that no start solved, and solves from a slow motion that is as short as is asked for.
-fn advised(
-    further: &Further<'_>,
-    mut found: Optimum,
-    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
-) -> Optimum {
-    if further.budget.is_over() {
-        return found;
-    }
-    phase("looking for the slowest mode");
-    let watch = stop::watch(further.budget.left());
-    found.half_period = half_period(&found);
-    drop(watch);
-    if matches!(found.shortest, Shortest::Longer(_) | Shortest::AsGiven) {
-        return found;
-    }
-    phase("looking for a slow motion");
-    let Some((said, motion)) = slow(further, &mut found) else {
-        return found;
-    };
-    found.shortest = said;
-    match motion {
-        Some(motion) if !further.budget.is_over() => {
-            let start = (further.motion.control, Some(&motion));
-            replaced(further, found, start, SLOW, observer)
+impl SecondStarts<'_, '_> {
+    /// Solves from the shortest motion, where that is as short as is asked for, and, unless it is longer, from a displaced guess; then looks for a motion as
+    /// slow as the slowest mode. The first solve, where none leads anywhere.
+    fn solve(mut self) -> Optimum {
+        self.others();
+        if !self.found.meets_equations() {
+            self.advised();
         }
-        _ => found,
+        if !self.found.meets_equations() {
+            self.found.stopped = self.budget.stopped();
+        }
+        self.found
     }
+
+    /// Solves from the shortest motion, and from a displaced guess.
+    fn others(&mut self) {
+        let MotionTask {
+            control, earlier, ..
+        } = self.motion;
+        if self.budget.is_over() {
+            return;
+        }
+        phase("looking for the shortest motion");
+        let (said, motion) = self.shortest();
+        self.found.shortest = said;
+        if let (Some(motion), false) = (motion, self.budget.is_over()) {
+            phase("solving from the shortest motion");
+            self.replace(control, Some(&motion), SHORTEST);
+        }
+        let is_done = self.found.meets_equations() || matches!(said, Shortest::Longer(_));
+        if !is_done && earlier.is_none() && !self.budget.is_over() {
+            phase(DISPLACED);
+            self.replace(&displaced(control, &self.found), None, DISPLACED);
+        }
+    }
+
+    /// Looks for what the slowest mode says of a problem that no start solved, and solves from a slow motion that is as short as is asked for.
+    fn advised(&mut self) {
+        if self.budget.is_over() {
+            return;
+        }
+        phase("looking for the slowest mode");
+        let watch = stop::watch(self.budget.left());
+        self.found.half_period = half_period(&self.found);
+        drop(watch);
+        if matches!(self.found.shortest, Shortest::Longer(_) | Shortest::AsGiven) {
+            return;
+        }
+        phase("looking for a slow motion");
+        let Some((said, motion)) = self.slow() else {
+            return;
+        };
+        self.found.shortest = said;
+        if let (Some(motion), false) = (motion, self.budget.is_over()) {
+            self.replace(self.motion.control, Some(&motion), SLOW);
+        }
+    }
+
+    /// Takes the optimum of another start, where that finds one; with the iterations of both.
+    fn replace(&mut self, control: &Control, earlier: Option<&Solution>, from: &'static str) {
+        let motion = MotionTask {
+            control,
+            earlier,
+            ..self.motion
+        };
+        let Some(mut second) = alone(motion, self.limits(ITERATIONS), self.observer) else {
+            return;
+        };
+        let before = &mut self.found;
+        if !second.meets_equations() {
+            put_after(&mut before.solution, &second.solution);
+            return;
+        }
+        let first = before.solution.status;
+        put_before(&mut second.solution, &before.solution);
+        *before = Optimum {
+            setup: before.setup,
+            carried: before.carried,
+            restarted: Some(Restarted { first, from }),
+            ..second
+        };
+    }
+
+    /// Looks for the shortest motion that is no shorter than the one asked for, where that was not found: from the guess of the problem and from a displaced
+    /// one. What it says, and the motion where that is as short as is asked for.
+    fn shortest(&mut self) -> (Shortest, Option<Solution>) {
+        let MotionTask {
+            control, earlier, ..
+        } = self.motion;
+        let Duration::Given(given) = control.duration else {
+            return (Shortest::Unknown, None);
+        };
+        let freed = freed(control, given);
+        if !fits(&freed) {
+            return (Shortest::Unknown, None);
+        }
+        let iterations = iterations(&self.found);
+        let displaced = match earlier {
+            None => Some((displaced(&freed, &self.found), None, ITERATIONS)),
+            Some(_) => None,
+        };
+        let starts = [(freed, earlier, iterations)].into_iter().chain(displaced);
+        let mut said = Shortest::Unknown;
+        for (problem, earlier, iterations) in starts {
+            let Some(found) = self.freed(&problem, earlier, iterations) else {
+                break;
+            };
+            let motion;
+            (said, motion) = read(found, given);
+            if motion.is_some() || matches!(said, Shortest::Longer(_)) {
+                return (said, motion);
+            }
+        }
+        (said, None)
+    }
+
+    /// Looks for a motion that is about as slow as the slowest mode, where that is slower than what is asked for and no other start led anywhere.
+    /// As of [`shortest`](Self::shortest); `None` if it finds none, too.
+    fn slow(&mut self) -> Option<(Shortest, Option<Solution>)> {
+        let control = self.motion.control;
+        let Duration::Given(given) = control.duration else {
+            return None;
+        };
+        let half_period = self.found.half_period.filter(|half| *half > given)?;
+        let problem = slowed(control, &self.found.model, given, half_period);
+        if !fits(&problem) {
+            return None;
+        }
+        let (said, motion) = read(self.freed(&problem, None, ITERATIONS)?, given);
+        let is_told = matches!(said, Shortest::AsGiven | Shortest::Longer(_));
+        is_told.then_some((said, motion))
+    }
+
+    /// Solves a problem with a free duration; its iterations are put to those of the first solve. `None` if it is time to stop, or it cannot be stated.
+    fn freed(
+        &mut self,
+        control: &Control,
+        earlier: Option<&Solution>,
+        iterations: usize,
+    ) -> Option<Optimum> {
+        if self.budget.is_over() {
+            return None;
+        }
+        let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
+        let motion = MotionTask {
+            control,
+            earlier,
+            ..self.motion
+        };
+        let found = alone(motion, self.limits(iterations), &mut go_on)?;
+        put_after(&mut self.found.solution, &found.solution);
+        Some(found)
+    }
+
+    /// Limits of a solve within a number of iterations.
+    fn limits(&self, iterations: usize) -> SolveLimits {
+        let left = self.budget.left_of_limits();
+        let most = left.iterations;
+        let most = most.unwrap_or(self.motion.control.solver.max_iterations);
+        SolveLimits {
+            iterations: Some(iterations.min(most)),
+            ..left
+        }
+    }
+}
+
+/// Solves for a single motion from one start; none where its problem cannot be stated.
+fn alone(
+    motion: MotionTask<'_>,
+    limits: SolveLimits,
+    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
+) -> Option<Optimum> {
+    let found = attempt(&motion.into(), limits, observer).ok();
+    found.map(|mut found| found.optima.remove(0))
+}
+
+/// What a solve with a free duration says, and its motion where that is as short as is asked for.
+fn read(found: Optimum, given: f64) -> (Shortest, Option<Solution>) {
+    let said = outcome(&found, given);
+    let is_start = is_as_given(&found, given);
+    (said, is_start.then_some(found.motion))
 }
 
 /// Half a period in ms of the slowest vibration about rest: at the goal, or where that is no state of rest, under the voltages of the start.
@@ -152,31 +271,6 @@ fn half_period(found: &Optimum) -> Option<f64> {
         rest.ok()?.slowest_period(model)
     };
     period.or_else(of_start).map(|period| 0.5 * period)
-}
-
-/// Returns the optimum of another start, or the result before where that finds none; with the iterations of both.
-fn replaced(
-    further: &Further<'_>,
-    mut before: Optimum,
-    (control, earlier): (&Control, Option<&Solution>),
-    from: &'static str,
-    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
-) -> Optimum {
-    let Some(mut second) = further.solve(control, earlier, ITERATIONS, observer) else {
-        return before;
-    };
-    if !second.meets_equations() {
-        put_after(&mut before.solution, &second.solution);
-        return before;
-    }
-    let first = before.solution.status;
-    put_before(&mut second.solution, &before.solution);
-    Optimum {
-        setup: before.setup,
-        carried: before.carried,
-        restarted: Some(Restarted { first, from }),
-        ..second
-    }
 }
 
 /// Largest free duration and the first one, as multiples of the given one.
@@ -257,79 +351,9 @@ fn squared_ranges(control: &Control, model: &Model) -> f64 {
     ranges.sum()
 }
 
-/// Looks for the shortest motion that is no shorter than the one asked for, where that was not found: from the guess of the problem and
-/// from a displaced one. What it says, and the motion where that is as short as is asked for; its iterations are put to those of the
-/// `first` solve.
-fn shortest(further: &Further<'_>, first: &mut Optimum) -> (Shortest, Option<Solution>) {
-    let MotionTask {
-        control, earlier, ..
-    } = further.motion;
-    let Duration::Given(given) = control.duration else {
-        return (Shortest::Unknown, None);
-    };
-    let freed = freed(control, given);
-    if !fits(&freed) {
-        return (Shortest::Unknown, None);
-    }
-    let iterations = iterations(first);
-    let displaced = match earlier {
-        None => Some((displaced(&freed, first), None, ITERATIONS)),
-        Some(_) => None,
-    };
-    let starts = [(freed, earlier, iterations)].into_iter().chain(displaced);
-    let mut said = Shortest::Unknown;
-    for (problem, earlier, iterations) in starts {
-        let Some(found) = solved(further, first, &problem, earlier, iterations) else {
-            break;
-        };
-        said = outcome(&found, given);
-        let is_start = is_as_given(&found, given);
-        if is_start || matches!(said, Shortest::Longer(_)) {
-            return (said, is_start.then_some(found.motion));
-        }
-    }
-    (said, None)
-}
-
-/// Looks for a motion that is about as slow as the slowest mode, where that is slower than what is asked for and no other start led anywhere.
-/// As of [`shortest`]; `None` if it finds none, too.
-fn slow(further: &Further<'_>, first: &mut Optimum) -> Option<(Shortest, Option<Solution>)> {
-    let control = further.motion.control;
-    let Duration::Given(given) = control.duration else {
-        return None;
-    };
-    let half_period = first.half_period.filter(|half| *half > given)?;
-    let problem = slowed(control, &first.model, given, half_period);
-    if !fits(&problem) {
-        return None;
-    }
-    let found = solved(further, first, &problem, None, ITERATIONS)?;
-    let said = outcome(&found, given);
-    let is_start = is_as_given(&found, given);
-    let is_told = matches!(said, Shortest::AsGiven | Shortest::Longer(_));
-    is_told.then(|| (said, is_start.then_some(found.motion)))
-}
-
 /// Iterations of a solve for the shortest motion.
 fn iterations(first: &Optimum) -> usize {
     (TIMES * first.solution.iterations.len()).clamp(FEWEST, MOST)
-}
-
-/// Solves a problem with a free duration; its iterations are put to those of the `first` solve. `None` if it is time to stop.
-fn solved(
-    further: &Further<'_>,
-    first: &mut Optimum,
-    problem: &Control,
-    earlier: Option<&Solution>,
-    iterations: usize,
-) -> Option<Optimum> {
-    if further.budget.is_over() {
-        return None;
-    }
-    let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
-    let found = further.solve(problem, earlier, iterations, &mut go_on)?;
-    put_after(&mut first.solution, &found.solution);
-    Some(found)
 }
 
 /// Returns true if a solve with a free duration ends at the given one.
@@ -385,37 +409,5 @@ pub(crate) fn displaced(control: &Control, first: &Optimum) -> Control {
     Control {
         guess,
         ..control.clone()
-    }
-}
-
-/// Further starts of a control problem, and what they may take.
-struct Further<'a> {
-    motion: MotionTask<'a>,
-    budget: Budget,
-}
-
-impl Further<'_> {
-    /// Solves a problem of the same system, within a number of iterations; none where it cannot be stated.
-    fn solve(
-        &self,
-        control: &Control,
-        earlier: Option<&Solution>,
-        iterations: usize,
-        observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
-    ) -> Option<Optimum> {
-        let left = self.budget.left_of_limits();
-        let most = left.iterations;
-        let most = most.unwrap_or(self.motion.control.solver.max_iterations);
-        let limits = SolveLimits {
-            iterations: Some(iterations.min(most)),
-            ..left
-        };
-        let motion = MotionTask {
-            control,
-            earlier,
-            ..self.motion
-        };
-        let found = attempt(&motion.into(), limits, observer).ok();
-        found.map(|mut found| found.optima.remove(0))
     }
 }

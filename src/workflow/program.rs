@@ -29,10 +29,10 @@ pub(crate) struct PreparedTogether<'m> {
 pub(crate) fn resolve_each(
     task: &ControlTask<'_>,
 ) -> Result<Vec<(Model, BoundaryConditions)>, WorkflowError> {
-    let each = task
-        .motions
-        .iter()
-        .map(|one| resolve(one.system, one.control).map_err(|error| error.of_motion(one.name)));
+    let each = task.motions.iter().map(|one| {
+        let resolved = resolve(one.system, one.control);
+        resolved.map_err(|error| error.of_motion(one.name))
+    });
     each.collect()
 }
 
@@ -117,13 +117,10 @@ fn common(starts: &[Start]) -> Start {
     if starts.iter().all(|start| *start == first) {
         return first;
     }
+    let mu_init = largest;
     match first {
-        _ if all(|start| matches!(start, Start::Resumed { .. })) => {
-            Start::Resumed { mu_init: largest }
-        }
-        _ if all(|start| matches!(start, Start::Primal { .. })) => {
-            Start::Primal { mu_init: largest }
-        }
+        _ if all(|start| matches!(start, Start::Resumed { .. })) => Start::Resumed { mu_init },
+        _ if all(|start| matches!(start, Start::Primal { .. })) => Start::Primal { mu_init },
         _ if all(|start| matches!(start, Start::PrimalDual | Start::Centred)) => Start::Centred,
         _ if all(|start| !matches!(start, Start::Cold | Start::Simulated)) => RESAMPLED,
         _ => Start::Cold,
@@ -294,7 +291,8 @@ fn joined_point(places: &Places, points: &[StartingPoint]) -> StartingPoint {
         costates: all.map(|all| Multipliers {
             constraints: all
                 .iter()
-                .flat_map(|one| one.constraints.iter().copied())
+                .flat_map(|one| &one.constraints)
+                .copied()
                 .collect(),
             lower: of(|one| &one.lower, &all),
             upper: of(|one| &one.upper, &all),
@@ -331,11 +329,11 @@ pub(super) fn shared_variables(
             let places = programs[..motions].iter();
             let places = places.map(|program| input(program, name, k));
             let places = places.collect::<Option<Vec<usize>>>();
-            shared.push(places.ok_or_else(|| WorkflowError::Problem {
-                place: "control.shared_inputs".to_owned(),
-                reason: format!(
+            shared.push(places.ok_or_else(|| {
+                let reason = format!(
                     "the input of \"{name}\" is not sought in all intervals of all motions"
-                ),
+                );
+                WorkflowError::problem("control.shared_inputs", reason)
             })?);
         }
     }
@@ -350,22 +348,17 @@ pub(super) fn shared_variables(
         let others = programs[1..].iter().map(other);
         let places = [Some(place)].into_iter().chain(others);
         let places = places.collect::<Option<Vec<usize>>>();
-        shared.push(places.ok_or_else(|| WorkflowError::Problem {
-            place: "control.free".to_owned(),
-            reason: format!(
-                "\"{}\" is one constant of all motions, which cannot begin at another value or be absent in one of them",
-                constant.name
-            ),
+        shared.push(places.ok_or_else(|| {
+            let reason = "is one constant of all motions, which cannot begin at another value or be absent in one of them";
+            WorkflowError::problem("control.free", format!("\"{}\" {reason}", constant.name))
         })?);
     }
     let of_first = |places: &[usize]| first.variable_scale(places[0]);
     let variable = |places: Vec<usize>| {
         let scale = of_first(&places);
         let each = places.iter().zip(programs);
-        let of = |(&place, program): (&usize, &&Transcription<'_>)| {
-            (place, scale / program.variable_scale(place))
-        };
-        let mut all: Vec<_> = each.map(of).map(Some).collect();
+        let of = each.map(|(&place, of)| Some((place, scale / of.variable_scale(place))));
+        let mut all: Vec<_> = of.collect();
         all.resize(programs.len(), None);
         SharedVariable(all)
     };
@@ -387,10 +380,7 @@ pub(super) fn shared_variables(
 /// Column of an input in an interval of the motion.
 fn input(program: &Transcription<'_>, name: &str, k: usize) -> Option<usize> {
     let model = program.model();
-    let source = model
-        .sources
-        .iter()
-        .position(|source| source.name == name)?;
+    let source = model.sources.iter().position(|it| it.name == name)?;
     let scalar = model.variables.input(source)?;
     (k < program.intervals()).then(|| program.unknowns().scalar(k, scalar))?
 }
@@ -398,12 +388,11 @@ fn input(program: &Transcription<'_>, name: &str, k: usize) -> Option<usize> {
 /// Free parameters of the scene with their columns.
 fn constants<'p>(program: &'p Transcription<'_>) -> Vec<(&'p Parameter, usize)> {
     let model = program.model();
-    let constant = |(place, column): (usize, &Column)| match column {
+    let columns = program.unknowns().columns.iter().enumerate();
+    let all = columns.filter_map(|(place, column)| match column {
         Column::Parameter { .. } => Some((model.parameter(column.of(&model.variables)), place)),
         _ => None,
-    };
-    let columns = program.unknowns().columns.iter().enumerate();
-    let all = columns.filter_map(constant);
+    });
     all.filter(|(constant, _)| constant.name != PEAK_VOLTAGE)
         .collect()
 }
@@ -448,11 +437,8 @@ pub(crate) fn with_found(
     let system = with_parameters(system, &control.parameters, &values);
     let (model, boundary) = resolve(&system, &given)?;
     if model.action.map.unknowns() != sought.action.map.unknowns() {
-        return Err(WorkflowError::Problem {
-            place: "control.free".to_owned(),
-            reason: "the identified values change which bodies can move; start from other guesses"
-                .to_owned(),
-        });
+        let reason = "the identified values change which bodies can move; start from other guesses";
+        return Err(WorkflowError::problem("control.free", reason));
     }
     Ok((model, boundary))
 }

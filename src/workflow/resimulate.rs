@@ -98,7 +98,8 @@ pub(crate) fn resimulate(
     tolerance: f64,
 ) -> Resimulation {
     let path_length = Distance::path_length(model, optimal);
-    let own = Repeat::from_solution((model, control), start, optimal, 1);
+    let repeat = |steps: usize| Repeat::from_solution(model, control, start, optimal, steps);
+    let own = repeat(1);
     let mut out = Resimulation {
         deviation: own.greatest(),
         path_length,
@@ -120,31 +121,25 @@ pub(crate) fn resimulate(
         true => own.greatest().over(path_length, model),
         false => 0.0_f64,
     };
-    if !out.refine(model, control, start, optimal, least) {
-        return out;
+    if out.refine(model, repeat, least) {
+        let DiscreteTrajectory {
+            z, momenta, times, ..
+        } = own.discrete;
+        let last = z.len() - 1;
+        out.end = Some(Start {
+            z: z[last].clone(),
+            momentum: momenta[last].clone(),
+            rates: None,
+            time: times[last],
+        });
     }
-    let last = own.discrete.z.len() - 1;
-    out.end = Some(Start {
-        z: own.discrete.z[last].clone(),
-        momentum: own.discrete.momenta[last].clone(),
-        rates: None,
-        time: own.discrete.times[last],
-    });
     out
 }
 
 impl Resimulation {
     /// Estimates the error with finer and finer steps until their distances fall, of a large error twice in a row: a vibration that
     /// no step resolves may lie near by chance once. Returns true if no simulation ended early.
-    fn refine(
-        &mut self,
-        model: &Model,
-        control: &Control,
-        start: &Start,
-        optimal: &Solution,
-        least: f64,
-    ) -> bool {
-        let with = |steps: usize| Repeat::from_solution((model, control), start, optimal, steps);
+    fn refine(&mut self, model: &Model, with: impl Fn(usize) -> Repeat, least: f64) -> bool {
         let mut before: Option<(Repeat, f64)> = None;
         let mut greatest = Distance::default();
         let (mut error, mut is_confirmed, mut fallen) = (0.0, false, 0);
@@ -191,11 +186,8 @@ impl Resimulation {
         let error = error.max(least);
         self.error = Some(error);
         self.is_confirmed = is_confirmed;
-        let allowed = if is_confirmed {
-            TOO_COARSE
-        } else {
-            0.5 * TOO_COARSE
-        };
+        let part = if is_confirmed { 1.0 } else { 0.5 };
+        let allowed = part * TOO_COARSE;
         if error > allowed {
             self.cause = Some(Cause::Coarse {
                 error,
@@ -232,9 +224,8 @@ impl Resimulation {
     /// That the grid is coarse, or that the motion under the voltages could not be simulated.
     pub(crate) fn warning(&self) -> Option<String> {
         if let (None, None, Some(failure)) = (&self.cause, self.error, &self.failure) {
-            return Some(format!(
-                "the motion under the optimal inputs could not be simulated: {failure}"
-            ));
+            let text = "the motion under the optimal inputs could not be simulated";
+            return Some(format!("{text}: {failure}"));
         }
         let error = self.error.filter(|_| self.cause.is_none())?;
         let Finer { deviation, .. } = self.finer.last()?;
@@ -263,11 +254,9 @@ pub fn under_constant_voltages(
     optimal: &Solution,
     durations: usize,
 ) -> Option<(DiscreteTrajectory, Option<StepError>)> {
-    let voltages = boundary.rest[1].as_ref()?;
-    let start = &boundary.start;
-    Some(constant(model, start, optimal, voltages, durations, || {
-        ControlFlow::Continue(())
-    }))
+    let (start, voltages) = (&boundary.start, boundary.rest[1].as_ref()?);
+    let go_on = || ControlFlow::Continue(());
+    Some(constant(model, start, optimal, voltages, durations, go_on))
 }
 
 /// A distance that grows by this factor within one step is no growth of rounding.
@@ -287,7 +276,8 @@ pub(crate) struct Repeat {
 impl Repeat {
     /// Simulates with inputs that are sought as in the optimum; those that are given follow their functions of time from step to step.
     pub(crate) fn from_solution(
-        (model, control): (&Model, &Control),
+        model: &Model,
+        control: &Control,
         start: &Start,
         optimal: &Solution,
         steps: usize,
@@ -357,13 +347,11 @@ impl Repeat {
                 distance: self.distances[k],
             });
         }
-        let first = sizes
-            .iter()
-            .position(|&size| size > f64::EPSILON)
-            .unwrap_or(k);
-        let elapsed = (optimal.times[k] - optimal.times[first.min(k - 1)]) / 1e3;
+        let first = sizes.iter().position(|&size| size > f64::EPSILON);
+        let first = first.unwrap_or(k).min(k - 1);
+        let elapsed = (optimal.times[k] - optimal.times[first]) / 1e3;
         Some(Cause::Unstable {
-            rate: (sizes[k] / sizes[first.min(k - 1)].max(f64::EPSILON)).ln() / elapsed,
+            rate: (sizes[k] / sizes[first].max(f64::EPSILON)).ln() / elapsed,
             distance: self.greatest(),
         })
     }

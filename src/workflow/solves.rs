@@ -175,18 +175,17 @@ impl Solves<'_, '_> {
             let (status, objective) = (again.status, again.objective);
             // Rounding may keep a solve from its tolerance at a point that is better all the same.
             let is_as_good = status.is_stationary() || objective < solution.objective;
-            let found = gap.after(program, (&solution, &again), &options);
+            let found = gap.after(program, [&solution, &again], &options);
             if !(status.is_optimal() || is_as_good && found.is_feasible) {
                 break;
             }
             gap = found;
             tracing::info!(?status, objective, left = gap.left, "confirmation");
-            let kept = match status {
-                Status::Solved => status,
-                _ => Status::Acceptable,
-            };
             let again = SolverResult {
-                status: kept,
+                status: match status {
+                    Status::Solved => status,
+                    _ => Status::Acceptable,
+                },
                 ..again
             };
             solution = one_of_both(solution, again);
@@ -333,7 +332,7 @@ impl Gap {
     pub(crate) fn after(
         &self,
         program: &mut impl Nlp,
-        (before, solution): (&SolverResult, &SolverResult),
+        [before, solution]: [&SolverResult; 2],
         options: &Options,
     ) -> Self {
         let scale = options.objective_scale.unwrap_or(self.scale);
@@ -416,25 +415,14 @@ pub(crate) fn bound(program: &mut impl Nlp, solution: &SolverResult) -> f64 {
         }
     };
     let Bounds { lower, upper } = program.constraints();
-    let of_row = |(i, value): (usize, &f64)| {
-        let y = costates.constraints[i];
-        product(
-            y,
-            if y < 0.0 {
-                value - lower[i]
-            } else {
-                upper[i] - value
-            },
-        )
+    let of_row = |i: usize| {
+        let (y, value) = (costates.constraints[i], solution.constraints[i]);
+        let to_bound = [value - lower[i], upper[i] - value];
+        product(y, to_bound[usize::from(y >= 0.0)])
     };
     let of_variables: f64 = (0..x.len()).map(of_variable).sum();
-    of_variables
-        + solution
-            .constraints
-            .iter()
-            .enumerate()
-            .map(of_row)
-            .sum::<f64>()
+    let rows = 0..solution.constraints.len();
+    of_variables + rows.map(of_row).sum::<f64>()
 }
 
 /// The size of a multiplier times the distance from its bound; nothing of a bound that is not there.
