@@ -7,6 +7,7 @@
 //! ∂E/∂h = −∇E·Πv / h,    ∂/∂h (∇E) = −(∇²E Πv + Π∇E) / h,                                  ∂²E/∂h² = (2 ∇E·Πv + Πv·∇²E Πv) / h².
 //! ```
 
+use crate::functional::scatter::FirstDerivatives;
 use crate::functional::{Kernel, Sample, Stencil};
 use crate::math::{Derivatives, Vector};
 
@@ -80,26 +81,33 @@ impl<'a, K: Kernel> Rates<'a, K> {
     }
 }
 
-/// ∂/∂h (∇G) of an element.
-pub(super) struct Border<'a, K: Kernel, D> {
-    pub(super) plain: &'a D,
+/// ∂/∂h (∇G) of an element, or of its contraction with the direction.
+pub(super) struct Border<'a, K: Kernel, D, P = D> {
+    pub(super) of: &'a D,
     pub(super) v: &'a Rates<'a, K>,
+    /// Of a contraction: the rates of v along the direction, and the element itself.
+    pub(super) along: Option<(&'a Rates<'a, K>, &'a P)>,
 }
 
-impl<K: Kernel, D: Derivatives> Border<'_, K, D> {
-    /// By argument `i`.
-    pub(super) fn force(&self, i: usize) -> Vector {
-        let force = self.plain.force(i);
-        let by_h = force - self.v.block(self.plain, i);
+impl<K: Kernel, D: Derivatives, P: Derivatives> FirstDerivatives for Border<'_, K, D, P> {
+    fn by_vector(&self, i: usize) -> Vector {
+        let force = self.of.force(i);
+        let mut by_h = force - self.v.block(self.of, i);
+        if let Some((w, plain)) = self.along {
+            by_h -= w.block(plain, i);
+        }
         match K::vector(self.v.element, i).stencil {
             Stencil::Rate => by_h - force,
             _ => by_h,
         }
     }
 
-    /// By scalar `s`.
-    pub(super) fn row(&self, s: usize) -> f64 {
-        self.plain.row(s) - self.v.entry(self.plain, s)
+    fn by_scalar(&self, s: usize) -> f64 {
+        let mut through_rates = self.v.entry(self.of, s);
+        if let Some((w, plain)) = self.along {
+            through_rates += w.entry(plain, s);
+        }
+        self.of.row(s) - through_rates
     }
 }
 
@@ -109,9 +117,8 @@ pub(super) struct QuantityBorder<'a, K: Kernel, D> {
     pub(super) v: &'a Rates<'a, K>,
 }
 
-impl<K: Kernel, D: Derivatives> QuantityBorder<'_, K, D> {
-    /// By argument `i`.
-    pub(super) fn force(&self, i: usize) -> Vector {
+impl<K: Kernel, D: Derivatives> FirstDerivatives for QuantityBorder<'_, K, D> {
+    fn by_vector(&self, i: usize) -> Vector {
         let by_h = self.v.block(self.plain, i);
         match K::vector(self.v.element, i).stencil {
             Stencil::Rate => by_h + self.plain.force(i),
@@ -119,35 +126,7 @@ impl<K: Kernel, D: Derivatives> QuantityBorder<'_, K, D> {
         }
     }
 
-    /// By scalar `s`.
-    pub(super) fn row(&self, s: usize) -> f64 {
+    fn by_scalar(&self, s: usize) -> f64 {
         self.v.entry(self.plain, s)
-    }
-}
-
-/// ∂/∂h (∇G) of an element contracted with the direction.
-pub(super) struct BorderAlong<'a, K: Kernel, D, W> {
-    pub(super) plain: &'a D,
-    pub(super) along: &'a W,
-    pub(super) v: &'a Rates<'a, K>,
-    /// Rates of v along the direction.
-    pub(super) w: &'a Rates<'a, K>,
-}
-
-impl<K: Kernel, D: Derivatives, W: Derivatives> BorderAlong<'_, K, D, W> {
-    /// By argument `i`.
-    pub(super) fn force(&self, i: usize) -> Vector {
-        let force = self.along.force(i);
-        let by_h = force - self.v.block(self.along, i) - self.w.block(self.plain, i);
-        match K::vector(self.v.element, i).stencil {
-            Stencil::Rate => by_h - force,
-            _ => by_h,
-        }
-    }
-
-    /// By scalar `s`.
-    pub(super) fn row(&self, s: usize) -> f64 {
-        let through_rates = self.v.entry(self.along, s) + self.w.entry(self.plain, s);
-        self.along.row(s) - through_rates
     }
 }

@@ -1,6 +1,6 @@
 //! Elements of one kind as a term of the sum: static inside, one virtual call outside.
 
-use crate::functional::border::{Border, BorderAlong, Rates};
+use crate::functional::border::{Border, Rates};
 use crate::functional::scatter::{ALL, Places, Slots, couple};
 use crate::functional::{
     Coupling, Horizon, Kernel, Order, Output, Sample, Scatter, Term, TermKind,
@@ -154,63 +154,53 @@ impl<K: Kernel> Scatter for Action<'_, K> {
     #[inline(always)]
     fn plain<D: Derivatives>(&mut self, d: &D) {
         let part = &mut self.out.plain;
-        let derivatives = (|i| d.force(i), |s| d.row(s));
-        let to = (&mut part.forces, part.rows.as_mut_slice());
-        self.places
-            .first(self.c, rows::<K>(self.element), derivatives, to);
+        let rows = || rows::<K>(self.element);
+        self.places.first(self.c, rows(), d, &mut part.first());
         if const { !D::HAS_SECOND } || self.order < Order::Hessian {
             return;
         }
         if K::DEGREE >= 2 {
-            let between = (rows::<K>(self.element), unknowns::<K>(self.element));
-            self.places.second(self.c, between, d, part);
+            let unknowns = unknowns::<K>(self.element);
+            self.places.second(self.c, rows(), unknowns, d, part);
         }
         if self.is_free {
-            let v = Rates::<K>::new(self.element, self.sample);
-            let border = Border { plain: d, v: &v };
-            let derivatives = (|i| border.force(i), |s| border.row(s));
-            let to = (&mut part.horizon_forces, part.horizon_rows.as_mut_slice());
-            self.places
-                .first(self.scale, rows::<K>(self.element), derivatives, to);
+            let v = &Rates::<K>::new(self.element, self.sample);
+            let along = None::<(_, &D)>;
+            let border = Border { of: d, v, along };
+            let to = &mut part.by_horizon();
+            self.places.first(self.scale, rows(), &border, to);
         }
     }
 
     #[inline(always)]
     fn along<D: Derivatives, W: Derivatives>(&mut self, d: &D, along: &W) {
         let part = &mut self.out.contracted;
-        let derivatives = (|i| along.force(i), |s| along.row(s));
-        let to = (&mut part.forces, part.rows.as_mut_slice());
+        let unknowns = || unknowns::<K>(self.element);
         self.places
-            .first(self.c, unknowns::<K>(self.element), derivatives, to);
+            .first(self.c, unknowns(), along, &mut part.first());
         if K::DEGREE >= 3 {
-            let between = (unknowns::<K>(self.element), unknowns::<K>(self.element));
-            self.places.second(self.c, between, along, part);
+            self.places
+                .second(self.c, unknowns(), unknowns(), along, part);
         }
         if !self.is_free {
             return;
         }
-        let v = Rates::<K>::new(self.element, self.sample);
-        let to = (&mut part.horizon_forces, part.horizon_rows.as_mut_slice());
-        let h = self.sample.h;
-        if K::VIRTUAL > 0 {
-            let plain = along;
-            let border = Border { plain, v: &v };
-            let derivatives = (|i| border.force(i), |s| border.row(s));
-            self.places
-                .first(self.scale, unknowns::<K>(self.element), derivatives, to);
-            part.horizon += self.scale * v.form(plain, &v) / h;
-        } else {
-            let w = Rates::along(self.element, self.sample);
-            let border = BorderAlong {
-                plain: d,
-                along,
-                v: &v,
-                w: &w,
-            };
-            let derivatives = (|i| border.force(i), |s| border.row(s));
-            self.places.first(self.scale, ALL, derivatives, to);
-            part.horizon += self.scale * (v.form(along, &v) + 2.0 * w.form(d, &v)) / h;
+        let v = &Rates::<K>::new(self.element, self.sample);
+        let w = &Rates::along(self.element, self.sample);
+        // At δx = w a virtual work is its own contraction.
+        let plain = (K::VIRTUAL == 0).then_some((w, d));
+        let mut form = v.form(along, v);
+        if plain.is_some() {
+            form += 2.0 * w.form(d, v);
         }
+        part.horizon += self.scale * form / self.sample.h;
+        let border = Border {
+            of: along,
+            v,
+            along: plain,
+        };
+        let to = &mut part.by_horizon();
+        self.places.first(self.scale, unknowns(), &border, to);
     }
 }
 

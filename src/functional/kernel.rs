@@ -79,13 +79,19 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     fn vectors(element: &Self::Element) -> usize;
 
     /// Number of its scalars.
-    fn scalars(element: &Self::Element) -> usize;
+    #[inline(always)]
+    fn scalars(_: &Self::Element) -> usize {
+        0
+    }
 
     /// Returns the vector that argument `i` reads, of n times [`READINGS`](Self::READINGS).
     fn vector(element: &Self::Element, i: usize) -> VectorArg;
 
     /// Scalar of the site that argument `s` depends on, and the factor of it; `None` for a constant.
-    fn scalar(element: &Self::Element, s: usize) -> Option<(usize, f64)>;
+    #[inline(always)]
+    fn scalar(_: &Self::Element, _s: usize) -> Option<(usize, f64)> {
+        None
+    }
 
     /// E at a sample; the work over the interval where E is a virtual work.
     fn energy(element: &Self::Element, sample: &Sample<'_>) -> f64;

@@ -121,20 +121,11 @@ impl<const NODES: usize> Kernel for MaxwellElements<NODES> {
     }
 
     #[inline(always)]
-    fn scalars(_: &MaxwellElement<NODES>) -> usize {
-        0
-    }
-
-    #[inline(always)]
     fn vector(element: &MaxwellElement<NODES>, i: usize) -> VectorArg {
         Stencil::Mid.of(match point::<NODES>(i) {
             None => element.nodes[i],
             Some((g, part)) => element.strains[g][part],
         })
-    }
-
-    fn scalar(_: &MaxwellElement<NODES>, _s: usize) -> Option<(usize, f64)> {
-        None
     }
 
     fn energy(element: &MaxwellElement<NODES>, sample: &Sample<'_>) -> f64 {

@@ -1,7 +1,7 @@
 //! Elements of one kind as a quantity that is read by itself.
 
 use crate::functional::border::{QuantityBorder, Rates};
-use crate::functional::scatter::{ALL, Places, Slots};
+use crate::functional::scatter::{ALL, FirstSums, Places, Slots};
 use crate::functional::{
     Couplings, Group, Horizon, Kernel, Measure, Order, Outer, Sample, Scatter, Stencil,
     SumDerivatives, VectorArg,
@@ -13,17 +13,14 @@ use std::marker::PhantomData;
 struct Gradient<'a, K: Kernel> {
     places: Places<'a, K>,
     c: f64,
-    forces: &'a mut [Vec<Vector>; 2],
-    rows: &'a mut [f64],
+    to: FirstSums<'a>,
 }
 
 impl<K: Kernel> Scatter for Gradient<'_, K> {
     const ORDER: Option<Order> = Some(Order::Gradient);
 
     fn plain<D: Derivatives>(&mut self, d: &D) {
-        let derivatives = (|i| d.force(i), |s| d.row(s));
-        let to = (&mut *self.forces, &mut *self.rows);
-        self.places.first(self.c, ALL, derivatives, to);
+        self.places.first(self.c, ALL, d, &mut self.to);
     }
 
     fn along<D: Derivatives, W: Derivatives>(&mut self, _: &D, _: &W) {}
@@ -59,18 +56,14 @@ struct Weighted<'a, K: Kernel> {
 impl<K: Kernel> Weighted<'_, K> {
     fn add<D: Derivatives>(&mut self, c: f64, d: &D) {
         let part = &mut *self.part;
-        let derivatives = (|i| d.force(i), |s| d.row(s));
-        let to = (&mut part.forces, part.rows.as_mut_slice());
-        self.places.first(c, ALL, derivatives, to);
+        self.places.first(c, ALL, d, &mut part.first());
         if K::DEGREE >= 2 {
-            self.places.second(c, (ALL, ALL), d, part);
+            self.places.second(c, ALL, ALL, d, part);
         }
         if let Some(v) = &self.rates {
             let c = c / self.h;
             let border = QuantityBorder { plain: d, v };
-            let derivatives = (|i| border.force(i), |s| border.row(s));
-            let to = (&mut part.horizon_forces, part.horizon_rows.as_mut_slice());
-            self.places.first(-c, ALL, derivatives, to);
+            self.places.first(-c, ALL, &border, &mut part.by_horizon());
             part.horizon += c * (2.0 * v.along_gradient(d) + v.form(d, v)) / self.h;
         }
     }
@@ -154,8 +147,10 @@ impl<K: Kernel> Measure for Group<K> {
             let mut gradient = Gradient::<K> {
                 places: Places::new(element, Slots::default(), sample),
                 c: self.scale,
-                forces,
-                rows,
+                to: FirstSums {
+                    forces: &mut *forces,
+                    rows: &mut *rows,
+                },
             };
             K::derivatives(element, order, sample, &storage, &mut gradient);
         }

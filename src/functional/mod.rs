@@ -14,7 +14,6 @@
 
 mod border;
 mod couplings;
-mod curved_sum;
 mod finite_elements;
 mod formulas;
 mod group;
@@ -30,15 +29,15 @@ mod pressure;
 mod scaled;
 mod scatter;
 mod stencil;
+mod sum;
 mod term;
 mod varied_elements;
 mod viscous_elements;
 
 pub use couplings::{BlockMask, Blocks, Coupling, Couplings, ParameterOrder};
-pub use curved_sum::CurvedSum;
-pub use curved_sum::Sum;
-pub use finite_elements::{Electrical, FiniteElement, FiniteElements, Variations};
-pub use finite_elements::{ElementField, ElementFields};
+pub use finite_elements::{
+    Electrical, ElementField, ElementFields, FiniteElement, FiniteElements, Variations,
+};
 pub use formulas::{Element, Formulas};
 pub use group::Group;
 pub use impulse::{Displacement, Impulse, Turn};
@@ -51,8 +50,8 @@ pub use node_blocks::{NodeBlocks, NodeVolume, Pressures, ScalarPlace, VectorPlac
 pub use paths::{Path, Paths};
 pub use pressure::{PressureFace, PressureFaces};
 pub use scaled::{Scaled, ScaledElement};
-pub use stencil::ScalarArg;
-pub use stencil::{Stencil, VectorArg};
+pub use stencil::{ScalarArg, Stencil, VectorArg};
+pub use sum::Sum;
 pub use term::{
     Functional, Horizon, Measure, Order, Outer, Output, Sample, SumDerivatives, Term, TermKind,
 };

@@ -5,6 +5,53 @@ use crate::functional::{BlockMask, Coupling, Kernel, NodeBlocks, Sample, SumDeri
 use crate::math::{Derivatives, Matrix, Vector};
 use std::ops::Range;
 
+/// First derivatives of a scalar of one element.
+pub(super) trait FirstDerivatives {
+    /// By argument `i`.
+    fn by_vector(&self, i: usize) -> Vector;
+
+    /// By scalar `s`.
+    fn by_scalar(&self, s: usize) -> f64;
+}
+
+impl<D: Derivatives> FirstDerivatives for D {
+    #[inline(always)]
+    fn by_vector(&self, i: usize) -> Vector {
+        self.force(i)
+    }
+
+    #[inline(always)]
+    fn by_scalar(&self, s: usize) -> f64 {
+        self.row(s)
+    }
+}
+
+/// Sums to which first derivatives are added: by the vectors of both instants, and by scalars.
+pub(super) struct FirstSums<'a> {
+    pub(super) forces: &'a mut [Vec<Vector>; 2],
+    pub(super) rows: &'a mut [f64],
+}
+
+impl SumDerivatives {
+    /// Its first derivatives.
+    #[inline(always)]
+    pub(super) fn first(&mut self) -> FirstSums<'_> {
+        FirstSums {
+            forces: &mut self.forces,
+            rows: &mut self.rows,
+        }
+    }
+
+    /// Their derivatives by the length of the interval.
+    #[inline(always)]
+    pub(super) fn by_horizon(&mut self) -> FirstSums<'_> {
+        FirstSums {
+            forces: &mut self.horizon_forces,
+            rows: &mut self.horizon_rows,
+        }
+    }
+}
+
 /// All arguments.
 pub(super) const ALL: Range<usize> = 0..usize::MAX;
 
@@ -33,8 +80,8 @@ impl<'a, K: Kernel> Places<'a, K> {
         &self,
         c: f64,
         rows: Range<usize>,
-        (force, row): (impl Fn(usize) -> Vector, impl Fn(usize) -> f64),
-        (forces, sums): (&mut [Vec<Vector>; 2], &mut [f64]),
+        of: &impl FirstDerivatives,
+        to: &mut FirstSums<'_>,
     ) {
         for i in 0..K::vectors(self.element) * K::READINGS {
             if !rows.contains(&i) {
@@ -42,8 +89,8 @@ impl<'a, K: Kernel> Places<'a, K> {
             }
             let arg = K::vector(self.element, i);
             let weights = arg.stencil.weights(self.h);
-            let force = force(i) * c;
-            for (side, forces) in forces.iter_mut().enumerate() {
+            let force = of.by_vector(i) * c;
+            for (side, forces) in to.forces.iter_mut().enumerate() {
                 if arg.stencil.reads(side) {
                     forces[arg.vector] += force * weights[side];
                 }
@@ -51,7 +98,7 @@ impl<'a, K: Kernel> Places<'a, K> {
         }
         for s in 0..K::scalars(self.element) {
             if let Some((at, factor)) = K::scalar(self.element, s) {
-                sums[at] += c * factor * row(s);
+                to.rows[at] += c * factor * of.by_scalar(s);
             }
         }
     }
@@ -61,14 +108,15 @@ impl<'a, K: Kernel> Places<'a, K> {
     pub(super) fn second<D: Derivatives>(
         &self,
         c: f64,
-        (rows, columns): (Range<usize>, Range<usize>),
+        rows: Range<usize>,
+        columns: Range<usize>,
         d: &D,
         part: &mut SumDerivatives,
     ) {
         if let Some(nodes) = &mut part.nodes {
             return self.at_nodes(c, rows, columns, d, nodes);
         }
-        self.blocks(c, (rows.clone(), columns), d, part);
+        self.blocks(c, rows.clone(), columns, d, part);
         let vectors = K::vectors(self.element);
         for i in 0..vectors * K::READINGS {
             if rows.contains(&i) {
@@ -85,7 +133,8 @@ impl<'a, K: Kernel> Places<'a, K> {
     fn blocks<D: Derivatives>(
         &self,
         c: f64,
-        (rows, columns): (Range<usize>, Range<usize>),
+        rows: Range<usize>,
+        columns: Range<usize>,
         d: &D,
         part: &mut SumDerivatives,
     ) {

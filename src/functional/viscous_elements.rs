@@ -100,11 +100,6 @@ impl<const NODES: usize> Kernel for ViscousElements<NODES> {
     }
 
     #[inline(always)]
-    fn scalars(_: &ViscousElement<NODES>) -> usize {
-        0
-    }
-
-    #[inline(always)]
     fn vector(element: &ViscousElement<NODES>, i: usize) -> VectorArg {
         let (node, reading) = node::<NODES>(i);
         let stencil = match reading {
@@ -112,10 +107,6 @@ impl<const NODES: usize> Kernel for ViscousElements<NODES> {
             _ => Stencil::Mid,
         };
         stencil.of(element.nodes[node])
-    }
-
-    fn scalar(_: &ViscousElement<NODES>, _s: usize) -> Option<(usize, f64)> {
-        None
     }
 
     fn energy(element: &ViscousElement<NODES>, sample: &Sample<'_>) -> f64 {

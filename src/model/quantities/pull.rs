@@ -2,7 +2,7 @@
 
 use crate::energy::{ElasticConstants, GivenCharge, Law, NeoHooke, SpanTension, ViscousTension};
 use crate::functional::{
-    CurvedSum, Displacement, Impulse, LawElement, Measure, Stencil, Sum, Term, TermKind, VectorArg,
+    Displacement, Impulse, LawElement, Measure, Stencil, Sum, Term, TermKind, VectorArg,
 };
 use crate::kinematics::Vectors;
 use crate::math::Vector;
@@ -196,8 +196,8 @@ impl Known<'_> {
             parts.add::<_, 6, 2, 0>(of.with(force, [middle, rate], []));
         }
         Some(match shape {
-            Shape::Linear => Box::new(Sum::new(parts.list)),
-            Shape::Curved => Box::new(CurvedSum::new(parts.list)),
+            Shape::Linear => Box::new(Sum::linear(parts.list)),
+            Shape::Curved => Box::new(Sum::curved(parts.list)),
         })
     }
 }
