@@ -2,20 +2,18 @@
 //! voltage.
 
 use crate::energy::{
-    Capacitance, Coefficient, FlowingCharge, FlowingChargeField, Law, MeanCharge, Multiple,
+    Capacitance, Coefficient, FlowingCharge, FlowingChargeField, MeanCharge, Multiple,
     PositionComponent, PotentialDrop, SourceCurrent, SourcePower, StoredEnergy, VoltageAcross,
 };
-use crate::functional::{Measure, Sample, Stencil, Term, TermKind, VectorArg};
-use crate::kinematics::Vectors;
+use crate::functional::{Sample, Stencil, Term, TermKind};
 use crate::math::Vector;
 use crate::model::components::capacitance;
 use crate::model::components::muscle_constants::{MuscleConstants, charge_field};
 use crate::model::constants::constant::Constant;
 use crate::model::layout::internal::InternalKind;
 use crate::model::model::Model;
-use crate::model::quantities::measures::{Known, Shape, instant, interval};
-use crate::model::quantities::quantity::Quantity;
-use crate::model::quantities::what::{At, What};
+use crate::model::quantities::measures::{Made, Reading};
+use crate::model::quantities::what::What;
 use crate::model::system::InputKind;
 use crate::model::system::electrode_circuits::ElectrodeCircuit;
 use crate::model::terms::loads::LOADS;
@@ -27,171 +25,139 @@ struct Charged<'a> {
     read: [usize; 2],
 }
 
-impl Known<'_> {
+/// A muscle under the voltage of its source: its constants and capacitance, the vector of its span, and the scalar of the voltage.
+struct Direct<'a> {
+    of: MuscleConstants<'a>,
+    capacitance: Capacitance<Coefficient>,
+    span: usize,
+    voltage: usize,
+}
+
+impl<'k> Reading<'k, '_> {
     /// The measure of a quantity of a muscle and its source.
-    pub(crate) fn of_charge(
-        &self,
-        quantity: &Quantity,
-        shape: Shape,
-        vectors: &mut Vectors,
-    ) -> Option<Box<dyn Measure>> {
-        let (unit, at) = (quantity.unit, quantity.at.stencil());
-        Some(match quantity.what {
+    pub(super) fn of_charge(&mut self) -> Made {
+        match self.quantity.what {
             What::ChargedField(muscle) => {
-                let Charged {
-                    of,
-                    energy,
-                    read: [span, charge],
-                } = self.charged(muscle, vectors)?;
+                let Charged { of, energy, read } = self.charged(muscle)?;
                 let field = FlowingChargeField {
-                    field: charge_field(energy.capacitance, unit),
+                    field: charge_field(energy.capacitance, self.quantity.unit),
                     unit: energy.unit,
                 };
-                match quantity.at {
-                    At::Instant => instant(shape, field.formula(&[]), [span, charge]),
-                    _ => shape.law(of.element(field, [at.of(span), at.of(charge)], [])),
-                }
+                self.law(of.element(field, read.map(|vector| self.at(vector)), []))
             }
-            What::Charge(source) => return self.charge(source, shape, vectors),
-            What::ElectrodeVoltage(source) => return self.across(source, shape, vectors),
-            What::Current(source) => {
-                if let Some(of) = self.electrodes(source) {
-                    return self.electrode_current(of, unit, shape);
-                }
-                let (of, current, read, voltage) = self.source_current(source, unit, vectors)?;
-                shape.law(of.element(current, read, [voltage]))
-            }
-            What::Power(muscle) => {
-                let (of, current, read, voltage) = self.source_current(muscle, unit, vectors)?;
-                shape.law(of.element(SourcePower(current), read, [voltage]))
-            }
+            What::Charge(source) => self.charge(source),
+            What::ElectrodeVoltage(source) => self.across(source),
+            What::Current(source) | What::Power(source) => self.flow(source),
             What::MeanCharge(muscle) => {
-                let (of, capacitance, span, voltage) = self.direct(muscle, vectors)?;
+                let Direct {
+                    of,
+                    capacitance,
+                    span,
+                    voltage,
+                } = self.direct(muscle)?;
                 let ends = [Stencil::Here, Stencil::Next].map(|at| at.of(span));
-                shape.law(of.element(MeanCharge(capacitance), ends, [voltage]))
+                self.law(of.element(MeanCharge(capacitance), ends, [voltage]))
             }
             What::Energy(muscle) => {
-                let (of, capacitance, span, voltage) = self.direct(muscle, vectors)?;
-                shape.law(of.element(StoredEnergy(capacitance), [at.of(span)], [voltage]))
+                let Direct {
+                    of,
+                    capacitance,
+                    span,
+                    voltage,
+                } = self.direct(muscle)?;
+                self.law(of.element(StoredEnergy(capacitance), [self.at(span)], [voltage]))
             }
-            _ => return None,
-        })
+            _ => None,
+        }
     }
 
     /// The electrodes behind a resistor that a source charges.
-    fn electrodes(&self, source: usize) -> Option<&ElectrodeCircuit> {
-        self.circuits.iter().find(|of| of.source == source)
+    fn electrodes(&self, source: usize) -> Option<&'k ElectrodeCircuit> {
+        let mut circuits = self.known.circuits.iter();
+        circuits.find(|of| of.source == source)
     }
 
     /// Charge behind the resistor of a source in mC.
-    fn charge(
-        &self,
-        source: usize,
-        shape: Shape,
-        vectors: &mut Vectors,
-    ) -> Option<Box<dyn Measure>> {
-        let charge = self.internals.vector(InternalKind::Charge(source))?;
+    fn charge(&mut self, source: usize) -> Made {
+        let charge = InternalKind::Charge(source);
+        let charge = self.known.internals.vector(charge)?;
         let unit = match self.electrodes(source) {
             Some(of) => of.unit_of_charge,
-            None => capacitance(&self.system.muscles[source])?.unit_of_charge(),
+            None => capacitance(&self.known.system.muscles[source])?.unit_of_charge(),
         };
         let (origin, normal) = (Vector::zeros(), Vector::x() * unit);
-        let component = PositionComponent { origin, normal };
-        Some(instant(shape, component, [vectors.index(charge)]))
+        let charge = self.vectors.index(charge);
+        self.instant(PositionComponent { origin, normal }, [charge])
     }
 
     /// Voltage of the electrodes behind the resistor of a source.
-    fn across(
-        &self,
-        source: usize,
-        shape: Shape,
-        vectors: &mut Vectors,
-    ) -> Option<Box<dyn Measure>> {
+    fn across(&mut self, source: usize) -> Made {
         if let Some(of) = self.electrodes(source) {
             let (potential, volts) = of.potential;
             let multiple = Multiple { unit: 1.0 / volts };
-            return Some(interval::<_, 1, 0, 1>(shape, multiple, [], [potential]));
+            return self.formula::<_, 1, 0, 1>(multiple, [], [potential]);
         }
-        let Charged {
-            of,
-            energy,
-            read: vectors,
-            ..
-        } = self.charged(source, vectors)?;
+        let Charged { of, energy, read } = self.charged(source)?;
         let FlowingCharge { capacitance, unit } = energy;
         let law = VoltageAcross { capacitance, unit };
-        let vectors = vectors.map(|vector| Stencil::Mid.of(vector));
-        Some(shape.law::<_, 6, 2, 0>(of.element(law, vectors, [])))
+        let vectors = read.map(|vector| Stencil::Mid.of(vector));
+        self.law::<_, 6, 2, 0>(of.element(law, vectors, []))
     }
 
-    /// Current of the source of electrodes behind a resistor in a unit.
-    fn electrode_current(
-        &self,
-        of: &ElectrodeCircuit,
-        unit: f64,
-        shape: Shape,
-    ) -> Option<Box<dyn Measure>> {
-        let mut read = self.sought.read();
-        let (potential, volts) = of.potential;
-        let series = of.circuit.resistance?;
-        let resistance = read.constant(Constant::Resistance(of.source), series);
-        let law = PotentialDrop {
-            unit: volts.into(),
-            resistance: resistance.scaled(unit),
-        };
-        Some(shape.law::<_, 2, 0, 2>(read.element(law, [], [of.input, potential])))
-    }
-
-    /// A muscle without a resistor: its constants and capacitance, the vector of its span, and the scalar of its voltage.
-    fn direct(
-        &self,
-        muscle: usize,
-        vectors: &mut Vectors,
-    ) -> Option<(MuscleConstants<'_>, Capacitance<Coefficient>, usize, usize)> {
-        let voltage = self.variables.input(muscle)?;
-        let mut of = self.muscle(muscle, vectors);
-        let capacitance = of.capacitance()?;
-        Some((of, capacitance, self.span(muscle, vectors), voltage))
-    }
-
-    /// A muscle behind a resistor.
-    fn charged(&self, muscle: usize, vectors: &mut Vectors) -> Option<Charged<'_>> {
-        let charge = self.internals.vector(InternalKind::Charge(muscle))?;
-        let mut of = self.muscle(muscle, vectors);
-        let energy = of.flowing_charge()?;
-        Some(Charged {
-            of,
-            energy,
-            read: [self.span(muscle, vectors), vectors.index(charge)],
-        })
-    }
-
-    /// The current of the source of a muscle behind a resistor in a unit, its vectors and the scalar of its voltage.
-    fn source_current(
-        &self,
-        muscle: usize,
-        unit: f64,
-        vectors: &mut Vectors,
-    ) -> Option<(
-        MuscleConstants<'_>,
-        SourceCurrent<Coefficient>,
-        [VectorArg; 2],
-        usize,
-    )> {
-        let voltage = self.variables.input(muscle)?;
+    /// Current of the source of electrodes behind a resistor; current or power of the source of a muscle behind one.
+    fn flow(&mut self, source: usize) -> Made {
+        let is_current = matches!(self.quantity.what, What::Current(_));
+        let unit = self.quantity.unit;
+        if let Some(of) = self.electrodes(source).filter(|_| is_current) {
+            let mut read = self.known.sought.read();
+            let (potential, volts) = of.potential;
+            let series = of.circuit.resistance?;
+            let resistance = read.constant(Constant::Resistance(of.source), series);
+            let law = PotentialDrop {
+                unit: volts.into(),
+                resistance: resistance.scaled(unit),
+            };
+            return self.law::<_, 2, 0, 2>(read.element(law, [], [of.input, potential]));
+        }
+        let voltage = [self.known.variables.input(source)?];
         let Charged {
             mut of,
             energy,
-            read: vectors,
-        } = self.charged(muscle, vectors)?;
+            read,
+        } = self.charged(source)?;
         let current = SourceCurrent {
             capacitance: energy.capacitance,
             unit_of_charge: energy.unit,
             resistance: of.resistance()?,
             unit: unit.into(),
         };
-        let vectors = vectors.map(|vector| Stencil::Mid.of(vector));
-        Some((of, current, vectors, voltage))
+        let vectors = read.map(|vector| Stencil::Mid.of(vector));
+        match is_current {
+            true => self.law(of.element(current, vectors, voltage)),
+            false => self.law(of.element(SourcePower(current), vectors, voltage)),
+        }
+    }
+
+    fn direct(&mut self, muscle: usize) -> Option<Direct<'k>> {
+        let voltage = self.known.variables.input(muscle)?;
+        let mut of = self.muscle(muscle);
+        Some(Direct {
+            capacitance: of.capacitance()?,
+            of,
+            span: self.span(muscle),
+            voltage,
+        })
+    }
+
+    fn charged(&mut self, muscle: usize) -> Option<Charged<'k>> {
+        let charge = InternalKind::Charge(muscle);
+        let charge = self.known.internals.vector(charge)?;
+        let mut of = self.muscle(muscle);
+        Some(Charged {
+            energy: of.flowing_charge()?,
+            of,
+            read: [self.span(muscle), self.vectors.index(charge)],
+        })
     }
 }
 

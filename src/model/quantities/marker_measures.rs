@@ -1,99 +1,78 @@
 //! Measures of markers: places, regions and velocities.
 
 use crate::energy::{Law, OutsideBox, PositionComponent, Projection, SquaredDistance};
-use crate::functional::{Measure, Stencil};
-use crate::kinematics::{MaterialVector, Vectors};
+use crate::functional::Stencil;
+use crate::kinematics::MaterialVector;
 use crate::math::Vector;
 use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::{MovedPoint, Read};
-use crate::model::quantities::measures::{Known, Shape, instant};
-use crate::model::quantities::quantity::Quantity;
+use crate::model::quantities::measures::{Made, Reading};
 use crate::model::quantities::what::{At, Of, Region, What};
 
-/// Times at which a marker is read: the instants, or a place of the intervals with the parameters that move it.
-struct Places {
-    marker: usize,
-    at: Option<(Stencil, Read)>,
-    shape: Shape,
-}
-
-impl Places {
-    fn of<L: Law<3>>(self, law: L) -> Box<dyn Measure> {
-        match self.at {
-            None => instant(self.shape, law.formula(&[]), [self.marker]),
-            Some((at, moved)) => {
-                let element = moved.element(law, [at.of(self.marker)], []);
-                self.shape.law::<_, 3, 1, 0>(element)
-            }
-        }
-    }
-}
-
-impl Known<'_> {
+impl Reading<'_, '_> {
     /// Place, velocity or clearance of a marker.
-    pub(crate) fn of_marker(
-        &self,
-        quantity: &Quantity,
-        shape: Shape,
-        vectors: &mut Vectors,
-    ) -> Option<Box<dyn Measure>> {
+    pub(super) fn of_marker(&mut self) -> Made {
         let origin = Vector::zeros();
-        let component = |axis| {
-            let normal = Vector::ith(axis, 1.0);
-            PositionComponent { origin, normal }
-        };
-        let times = match (&quantity.what, quantity.of, quantity.at) {
-            (What::Speed(_), ..) => Some(Stencil::Rate),
-            (_, Of::Step, _) => Some(Stencil::Difference),
-            (_, _, At::Instant) => None,
-            (_, _, at) => Some(at.stencil()),
-        };
-        let mut places = |marker: usize| Places {
-            marker: self.markers[marker],
-            at: times.map(|at| (at, self.moved_marker(marker, vectors))),
-            shape,
-        };
-        Some(match quantity.what {
-            What::Place { marker, axis } => places(marker).of(component(axis)),
+        match self.quantity.what {
+            What::Place { marker, axis } => {
+                let normal = Vector::ith(axis, 1.0);
+                self.marker(marker, PositionComponent { origin, normal })
+            }
             // At most one inside a sphere, at least three only outside a box.
             What::Region { marker, region } => match region {
                 Region::Sphere { centre, radius } => {
                     let scale = radius.into();
-                    places(marker).of(SquaredDistance { centre, scale })
+                    self.marker(marker, SquaredDistance { centre, scale })
                 }
                 Region::Box { min, max } => {
                     let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
-                    places(marker).of(OutsideBox { centre, half })
+                    self.marker(marker, OutsideBox { centre, half })
                 }
             },
             What::Speed(marker) => {
-                let scale = quantity.unit.into();
-                let centre = origin;
-                places(marker).of(SquaredDistance { centre, scale })
+                let (centre, scale) = (origin, self.quantity.unit.into());
+                self.marker(marker, SquaredDistance { centre, scale })
             }
             What::Clearance { marker, plane } => {
-                let body = self.presolved.carrier(plane.body);
-                let normal = MaterialVector::direction(body, &plane.normal, self.reference);
-                let foot = MaterialVector::point(body, &plane.point, self.reference);
-                let place = vectors.list()[self.markers[marker]].clone();
+                let (reference, list) = (self.known.reference, self.vectors.list());
+                let body = self.known.presolved.carrier(plane.body);
+                let normal = MaterialVector::direction(body, &plane.normal, reference);
+                let foot = MaterialVector::point(body, &plane.point, reference);
+                let place = list[self.known.markers[marker]].clone();
                 let read = [normal, MaterialVector::span(&foot, &place)];
-                instant(shape, Projection, read.map(|vector| vectors.index(vector)))
+                let read = read.map(|vector| self.vectors.index(vector));
+                self.instant(Projection, read)
             }
-            _ => return None,
-        })
+            _ => None,
+        }
+    }
+
+    /// Measure of a law of the place or velocity of a marker, with the parameters that move it in the intervals.
+    fn marker<L: Law<3>>(&mut self, marker: usize, law: L) -> Made {
+        let vector = self.known.markers[marker];
+        let read = match (&self.quantity.what, self.quantity.of) {
+            (What::Speed(_), _) => Stencil::Rate.of(vector),
+            (_, Of::Step) => Stencil::Difference.of(vector),
+            _ => self.at(vector),
+        };
+        let moved = match self.quantity.at {
+            At::Instant => Read::nothing(),
+            _ => self.moved_marker(marker),
+        };
+        self.law::<_, 3, 1, 0>(moved.element(law, [read], []))
     }
 
     /// The parameters that move a marker.
-    fn moved_marker(&self, marker: usize, vectors: &mut Vectors) -> Read {
-        let mut moved = self.sought.read();
-        let of = &self.presolved.system.markers[marker];
+    fn moved_marker(&mut self, marker: usize) -> Read {
+        let mut moved = self.known.sought.read();
+        let of = &self.known.presolved.system.markers[marker];
         let point = MovedPoint {
             weight: 1.0,
             body: of.point.body,
             place: Some(&|axis| Constant::MarkerPlace(marker, axis)),
         };
         if of.solid.is_none() {
-            moved.moves(0, [point], |vector| vectors.index(vector));
+            moved.moves(0, [point], |vector| self.vectors.index(vector));
         }
         moved
     }

@@ -1,28 +1,27 @@
-//! Measure of the force with which a spring or a tendon pulls its ends together: the forces of its own terms along its span.
+//! Measures of the forces with which parts pull their ends together and joints act: the forces of their own terms along a displacement.
 
 use crate::energy::{ElasticConstants, GivenCharge, Law, NeoHooke, SpanTension, ViscousTension};
 use crate::functional::{
     Displacement, Impulse, LawElement, Measure, Stencil, Sum, Term, TermKind, VectorArg,
 };
-use crate::kinematics::Vectors;
 use crate::math::Vector;
 use crate::model::components::Kind;
 use crate::model::components::muscle_constants::MuscleConstants;
 use crate::model::layout::internal::InternalKind;
 use crate::model::layout::joint_sections::JointSection;
 use crate::model::layout::variables::Time;
-use crate::model::quantities::measures::{Known, Shape};
+use crate::model::quantities::measures::{Made, Reading, Shape};
 use crate::model::quantities::what::{Pulling, Reaction};
 use crate::model::system::Fidelity;
 use crate::model::term_order::rank;
 use crate::model::terms::joint_constraints::DAMPING;
 use std::sync::Arc;
 
-impl Known<'_> {
+impl Reading<'_, '_> {
     /// Impulse of the forces of a spring or tendon along its span in an interval; none where nothing changes its length.
-    pub(crate) fn pull(&self, part: Pulling, vectors: &mut Vectors) -> Option<Box<dyn Measure>> {
-        let mut terms = self.no_terms(vectors);
-        let components = &self.system.components;
+    pub(super) fn pull(&mut self, part: Pulling) -> Made {
+        let mut terms = self.known.no_terms(self.vectors);
+        let components = &self.known.system.components;
         let (span, factor) = match part {
             Pulling::Muscle(_) => return None,
             Pulling::Spring(index) => {
@@ -47,55 +46,47 @@ impl Known<'_> {
         let (terms, ..) = terms.finish(rank);
         let terms: Vec<Arc<dyn Term>> = terms.into_iter().map(Arc::from).collect();
         let pulling = terms.iter().filter(|term| term.kind() != TermKind::Kinetic);
-        let counts = [
-            vectors.list().len(),
-            self.variables.of(Time::Interval).len(),
-        ];
-        let displacement = Displacement::Shortening { span, factor };
         let pulling: Vec<_> = pulling.collect();
-        let measure = Impulse::new(&pulling, counts, displacement, 0);
-        (!pulling.is_empty()).then(|| Box::new(measure) as Box<dyn Measure>)
+        let displacement = Displacement::Shortening { span, factor };
+        let measure = self.impulse(&pulling, displacement, 0);
+        (!pulling.is_empty()).then_some(measure)
     }
-}
 
-impl Known<'_> {
-    /// Impulse of a joint along a direction, or its moment about the joint, at the start of an interval, or minus that at its end.
-    pub(crate) fn reaction(
+    fn impulse(
         &self,
-        joint: usize,
-        of: Reaction,
-        along: Vector,
-        at: Stencil,
-        vectors: &mut Vectors,
-    ) -> Option<Box<dyn Measure>> {
-        let kept = self.presolved.joint(joint).filter(|_| !self.is_glued)?;
-        let section = JointSection::new(self.system, self.presolved, self.reference, kept)?;
-        let (side, direction) = match at {
+        terms: &[&Arc<dyn Term>],
+        displacement: Displacement,
+        side: usize,
+    ) -> Box<dyn Measure> {
+        let scalars = self.known.variables.of(Time::Interval).len();
+        let counts = [self.vectors.list().len(), scalars];
+        Box::new(Impulse::new(terms, counts, displacement, side))
+    }
+
+    /// Impulse of a joint along a direction, or its moment about the joint, at the start of an interval, or minus that at its end.
+    pub(super) fn reaction(&mut self, joint: usize, of: Reaction, along: Vector) -> Made {
+        let known = self.known;
+        let kept = known.presolved.joint(joint).filter(|_| !known.is_glued)?;
+        let section = JointSection::new(known.system, known.presolved, known.reference, kept)?;
+        let (side, axis) = match self.quantity.at.stencil() {
             Stencil::Next => (1, -along),
             _ => (0, along),
         };
         let displacement = match of {
             Reaction::Force => {
-                let moved = vectors.list().iter();
-                let moved = moved.map(|vector| section.displacement(vector, &direction));
+                let moved = self.vectors.list().iter();
+                let moved = moved.map(|vector| section.displacement(vector, &axis));
                 Displacement::Shift(moved.collect())
             }
             Reaction::Torque if !section.has_torque => return None,
             Reaction::Torque => {
-                let turns = section.turns(vectors);
-                Displacement::Turn {
-                    axis: direction,
-                    turns,
-                }
+                let turns = section.turns(self.vectors);
+                Displacement::Turn { axis, turns }
             }
         };
-        let terms = self.terms.iter().filter(|term| term.name() != DAMPING);
-        let counts = [
-            vectors.list().len(),
-            self.variables.of(Time::Interval).len(),
-        ];
+        let terms = known.terms.iter().filter(|term| term.name() != DAMPING);
         let terms: Vec<_> = terms.collect();
-        Some(Box::new(Impulse::new(&terms, counts, displacement, side)))
+        Some(self.impulse(&terms, displacement, side))
     }
 }
 
@@ -110,8 +101,7 @@ impl Parts {
         &mut self,
         element: LawElement<L, NV, NS>,
     ) {
-        let part = Shape::Linear.scaled_law(1.0 / self.unit, element);
-        self.list.push(part);
+        self.list.push(Shape::Linear.law(1.0 / self.unit, element));
     }
 
     /// Adds the force of elasticity, with that of a voltage, by a law of elasticity.
@@ -135,29 +125,24 @@ impl Parts {
     }
 }
 
-impl Known<'_> {
-    /// Tension of a lumped muscle that moves or has a voltage, in a unit in N, in the middle of the intervals.
-    pub(crate) fn tension(
-        &self,
-        index: usize,
-        unit: f64,
-        shape: Shape,
-        vectors: &mut Vectors,
-    ) -> Option<Box<dyn Measure>> {
-        let muscle = &self.presolved.system.muscles[index];
-        let charge = self.internals.vector(InternalKind::Charge(index));
-        let given = self.system.charge_of(index);
-        let given = given.and_then(|source| self.variables.input(source));
-        let voltage = self.variables.input(index).filter(|_| charge.is_none());
+impl Reading<'_, '_> {
+    /// Tension of a lumped muscle that moves or has a voltage, in the middle of the intervals.
+    pub(super) fn tension(&mut self, index: usize) -> Made {
+        let known = self.known;
+        let muscle = &known.presolved.system.muscles[index];
+        let charge = known.internals.vector(InternalKind::Charge(index));
+        let given = known.system.charge_of(index);
+        let given = given.and_then(|source| known.variables.input(source));
+        let voltage = known.variables.input(index).filter(|_| charge.is_none());
         let is_changed = charge.is_some() || given.is_some() || voltage.is_some();
-        if muscle.fidelity != Fidelity::Lumped || !(is_changed || self.presolved.moves(muscle)) {
+        if muscle.fidelity != Fidelity::Lumped || !(is_changed || known.presolved.moves(muscle)) {
             return None;
         }
-        let of = self.muscle(index, vectors);
-        let span = self.span(index, vectors);
+        let of = self.muscle(index);
+        let span = self.span(index);
         let [middle, rate] = [Stencil::Mid, Stencil::Rate].map(|stencil| stencil.of(span));
         let mut parts = Parts {
-            unit,
+            unit: self.quantity.unit,
             list: Vec::new(),
         };
         match muscle.material.law {
@@ -171,7 +156,7 @@ impl Known<'_> {
         let mut electric = of.clone();
         if let Some((charge, energy)) = charge.zip(electric.flowing_charge()) {
             let energy = SpanTension(energy);
-            let vectors = [middle, Stencil::Mid.of(vectors.index(charge))];
+            let vectors = [middle, Stencil::Mid.of(self.vectors.index(charge))];
             parts.add::<_, 6, 2, 0>(electric.element(energy, vectors, []));
         }
         let mut electric = of.clone();
@@ -184,8 +169,8 @@ impl Known<'_> {
                 muscle: index,
                 branch,
             };
-            if let Some(viscous) = self.internals.vector(kind) {
-                let vectors = [middle, Stencil::Mid.of(vectors.index(viscous))];
+            if let Some(viscous) = known.internals.vector(kind) {
+                let vectors = [middle, Stencil::Mid.of(self.vectors.index(viscous))];
                 let force =
                     |of: &mut MuscleConstants<'_>| SpanTension(of.branch_spring(branch, constants));
                 parts.add::<_, 6, 2, 0>(of.with(force, vectors, []));
@@ -195,7 +180,7 @@ impl Known<'_> {
             let force = |of: &mut MuscleConstants<'_>| ViscousTension(of.viscous(viscosity));
             parts.add::<_, 6, 2, 0>(of.with(force, [middle, rate], []));
         }
-        Some(match shape {
+        Some(match self.shape {
             Shape::Linear => Box::new(Sum::linear(parts.list)),
             Shape::Curved => Box::new(Sum::curved(parts.list)),
         })
