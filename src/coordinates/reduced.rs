@@ -3,7 +3,7 @@
 use crate::coordinates::configuration::Configuration;
 use crate::coordinates::map::CoordinateMap;
 use crate::coordinates::pattern::StepPattern;
-use crate::coordinates::pull_back::{Destination, PullBack, Site};
+use crate::coordinates::pull_back::{Destination, PullBack, Pulled, Site};
 use crate::functional::{
     BlockMask, Blocks, Functional, Horizon, NodeBlocks, Order, Outer, Output, Sample,
     SumDerivatives,
@@ -58,13 +58,10 @@ impl Reduced {
             instant: self.instants.output(order),
             local: match order {
                 Order::Gradient => Vec::new(),
-                _ => vec![
-                    0.0;
-                    self.laid()
-                        .intervals
-                        .local()
-                        .max(self.laid().instants.local())
-                ],
+                _ => {
+                    let laid = self.laid();
+                    vec![0.0; laid.intervals.local().max(laid.instants.local())]
+                }
             },
         }
     }
@@ -130,8 +127,8 @@ impl Reduced {
     pub fn pull_back_interval(
         &self,
         order: Order,
-        [a, b]: [&Configuration; 2],
-        &Interval { horizon, sides, .. }: &Interval<'_>,
+        ends: [&Configuration; 2],
+        interval: &Interval<'_>,
         k: usize,
         scratch: &mut Scratch,
         values: &mut [f64],
@@ -139,12 +136,9 @@ impl Reduced {
         if order == Order::Gradient {
             return;
         }
-        let Laid {
-            intervals: plan,
-            layout,
-            ..
-        } = self.laid();
-        let target = Destination {
+        let laid = self.laid();
+        let (plan, layout) = (&laid.intervals, &laid.layout);
+        let target = &Destination {
             blocks: [
                 layout.same_at(k),
                 layout.upper_at(k),
@@ -154,34 +148,29 @@ impl Reduced {
             mixed: [layout.mixed_at(k, 0), layout.mixed_at(k, 1)],
             scalars: layout.scalars_at(k),
         };
-        let Scratch {
-            interval, local, ..
-        } = scratch;
-        plan.add(order, [a, b], interval, sides, &target, [local, values]);
-        if horizon == Horizon::Free {
-            let (plain, contracted) = (&interval.plain, &interval.contracted);
-            let part = if order == Order::Third {
-                contracted
-            } else {
-                plain
-            };
-            for (side, instant) in [a, b].into_iter().enumerate() {
-                let at = layout.horizon_at(k + side);
-                let rows = &mut values[at..at + layout.unknowns];
-                self.map
-                    .pull_back(&instant.columns, &part.horizon_forces[side], rows);
-                if order == Order::Third {
-                    let forces = &plain.horizon_forces[side];
-                    self.map.pull_back_along(&instant.columns_l, forces, rows);
-                }
+        let Output { plain, contracted } = &scratch.interval;
+        let local = &mut scratch.local;
+        let to = &mut Pulled::new(ends, interval.sides, target, local, values);
+        plan.add(order, &scratch.interval, to);
+        if interval.horizon == Horizon::Given {
+            return;
+        }
+        let part = match order {
+            Order::Third => contracted,
+            _ => plain,
+        };
+        for (side, instant) in ends.into_iter().enumerate() {
+            let rows = &mut values[layout.horizon_at(k + side)..][..layout.unknowns];
+            let forces = &part.horizon_forces[side];
+            self.map.pull_back(&instant.columns, forces, rows);
+            if order == Order::Third {
+                let forces = &plain.horizon_forces[side];
+                self.map.pull_back_along(&instant.columns_l, forces, rows);
             }
-            let at = layout.horizon_scalars_at(k);
-            for (value, row) in values[at..at + layout.interval_scalars]
-                .iter_mut()
-                .zip(&part.horizon_rows)
-            {
-                *value += row;
-            }
+        }
+        let rows = &mut values[layout.horizon_scalars_at(k)..];
+        for (value, row) in rows.iter_mut().zip(&part.horizon_rows) {
+            *value += row;
         }
     }
 
@@ -196,9 +185,8 @@ impl Reduced {
         scratch: &mut Scratch,
         values: &mut [f64],
     ) {
-        let local = &mut scratch.local;
-        let plan = &self.laid().intervals;
-        plan.hessian(ends, part, sides, target, local, values);
+        let to = &mut Pulled::new(ends, sides, target, &mut scratch.local, values);
+        self.laid().intervals.hessian(part, to);
     }
 
     /// Pulls back the blocks that the last interval of a sweep carried on to the final instant k.
@@ -216,22 +204,15 @@ impl Reduced {
         scratch.interval.plain.clear(true);
         scratch.interval.contracted.clear(true);
         scratch.carry(order);
-        let Laid {
-            intervals: plan,
-            layout,
-            ..
-        } = self.laid();
-        let same = layout.same_at(k);
-        let target = Destination {
-            blocks: [same; 4],
+        let laid = self.laid();
+        let target = &Destination {
+            blocks: [laid.layout.same_at(k); 4],
             mixed: [usize::MAX; 2],
-            scalars: layout.scalars_at(k),
+            scalars: laid.layout.scalars_at(k),
         };
-        let Scratch {
-            interval, local, ..
-        } = scratch;
-        let (ends, here) = ([last, last], BlockMask::HERE);
-        plan.add(order, ends, interval, here, &target, [local, values]);
+        let local = &mut scratch.local;
+        let to = &mut Pulled::new([last, last], BlockMask::HERE, target, local, values);
+        laid.intervals.add(order, &scratch.interval, to);
     }
 
     /// Evaluates an instant and adds its forces.
@@ -243,15 +224,13 @@ impl Reduced {
         scratch: &mut Scratch,
     ) {
         let n = self.map.coordinates;
+        let scalars = &instant.z[n..self.map.unknowns()];
         let sample = Sample {
-            vectors: [&instant.x, &instant.x],
             along: [&instant.w, &instant.w],
-            scalars: &instant.z[n..self.map.unknowns()],
             scalars_along: &instant.l[n..],
-            h: 1.0,
-            horizon: Horizon::Given,
             sides: BlockMask::HERE,
             outer,
+            ..Sample::of_instant(&instant.x, scalars)
         };
         self.instants.evaluate(order, &sample, &mut scratch.instant);
         add(&mut instant.forces, &scratch.instant.plain.forces[0]);
@@ -276,30 +255,21 @@ impl Reduced {
         if order == Order::Gradient {
             return;
         }
-        let Laid {
-            instants: plan,
-            curvature,
-            layout,
-            ..
-        } = self.laid();
-        let same = layout.same_at(k);
-        let target = Destination {
+        let laid = self.laid();
+        let same = laid.layout.same_at(k);
+        let target = &Destination {
             blocks: [same; 4],
             mixed: [same, usize::MAX],
             scalars: usize::MAX,
         };
-        let Scratch {
-            instant: output,
-            local,
-            ..
-        } = scratch;
-        let (ends, here) = ([&*instant, &*instant], BlockMask::HERE);
-        plan.add(order, ends, output, here, &target, [local, values]);
+        let (ends, local) = ([&*instant; 2], &mut scratch.local);
+        let to = &mut Pulled::new(ends, BlockMask::HERE, target, local, values);
+        laid.instants.add(order, &scratch.instant, to);
         if let Some(tree) = &self.map.tree {
             let values = &mut values[same..];
             match order {
-                Order::Third => tree.curvature_along(instant, curvature, values),
-                _ => tree.curvature(instant, curvature, values),
+                Order::Third => tree.curvature_along(instant, &laid.curvature, values),
+                _ => tree.curvature(instant, &laid.curvature, values),
             }
         }
     }

@@ -1,12 +1,11 @@
 //! Pairs of articulated vectors, both of which follow joint coordinates.
 
-use crate::coordinates::pattern::StepPattern;
-use crate::coordinates::pull_back::destination::{Destination, Site};
+use crate::coordinates::pull_back::destination::{Plan, Pulled};
 use crate::coordinates::pull_back::group::Group;
 use crate::coordinates::pull_back::images::BlockKind;
 use crate::coordinates::pull_back::product::Pair;
 use crate::coordinates::tree::{LANES, TangentColumns};
-use crate::functional::{BlockMask, Blocks};
+use crate::functional::Blocks;
 use pulp::{Arch, Scalar, Simd, WithSimd};
 use rustc_hash::FxHashMap;
 
@@ -18,22 +17,6 @@ pub(super) struct Groups {
     known: FxHashMap<[Vec<usize>; 2], usize>,
 }
 
-/// Packed columns of both ends of a block, and their derivatives along the direction.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Ends<'a> {
-    pub(super) columns: [&'a [f64]; 2],
-    pub(super) columns_l: [&'a [f64]; 2],
-}
-
-/// Destination of blocks, and the storage on the way.
-#[derive(Debug)]
-pub(super) struct BlockDestination<'a> {
-    pub(super) target: &'a Destination,
-    /// Images and local matrix of one group.
-    pub(super) local: &'a mut [f64],
-    pub(super) values: &'a mut [f64],
-}
-
 impl Groups {
     /// Adds a pair of vectors with these columns.
     pub(super) fn add(
@@ -41,8 +24,7 @@ impl Groups {
         kind: BlockKind,
         pair: Pair,
         [a, b]: [&TangentColumns; 2],
-        layout: &mut StepPattern,
-        site: Site,
+        plan: &mut Plan<'_>,
     ) {
         if a.support.is_empty() || b.support.is_empty() {
             return;
@@ -57,7 +39,7 @@ impl Groups {
                     self.list.push(Group::new(stride));
                     self.list.len() - 1
                 });
-                self.list[index].widen(&supports, layout, site);
+                self.list[index].widen(&supports, plan);
                 self.known.insert(supports, index);
                 index
             }
@@ -71,64 +53,42 @@ impl Groups {
     }
 
     /// Adds Pᵀ H P.
-    pub(super) fn hessian(
-        &self,
-        ends: Ends<'_>,
-        blocks: &Blocks,
-        sides: BlockMask,
-        place: BlockDestination<'_>,
-    ) {
+    pub(super) fn hessian(&self, blocks: &Blocks, to: &mut Pulled<'_>) {
         dispatch(SecondDerivativesTask {
             groups: self,
-            ends,
             blocks,
-            sides,
-            place,
+            to,
         });
     }
 
     /// Adds `Pᵀ H_w P + P′_lᵀ H P + Pᵀ Hᵀ P′_l` of plain blocks H and contracted blocks `H_w`.
-    pub(super) fn third(
-        &self,
-        ends: Ends<'_>,
-        blocks: [&Blocks; 2],
-        sides: BlockMask,
-        place: BlockDestination<'_>,
-    ) {
+    pub(super) fn third(&self, blocks: [&Blocks; 2], to: &mut Pulled<'_>) {
         dispatch(ContractedTask {
             groups: self,
-            ends,
             blocks,
-            sides,
-            place,
+            to,
         });
     }
 }
 
 /// Pᵀ H P of all groups.
-struct SecondDerivativesTask<'a> {
+struct SecondDerivativesTask<'a, 'p> {
     groups: &'a Groups,
-    ends: Ends<'a>,
     blocks: &'a Blocks,
-    sides: BlockMask,
-    place: BlockDestination<'a>,
+    to: &'a mut Pulled<'p>,
 }
 
-impl Task for SecondDerivativesTask<'_> {
+impl Task for SecondDerivativesTask<'_, '_> {
     #[inline(always)]
     fn run<S: Simd>(self, unit: S) {
-        let BlockDestination {
-            target,
-            local,
-            values,
-        } = self.place;
+        let to = self.to;
         for group in &self.groups.list {
-            let (images, out) = group.split(local, 1);
-            for side in (0..4).filter(|&side| self.sides.blocks[side]) {
-                let [a, b] = group.columns(self.ends.columns, side);
+            let (images, out) = group.split(to.local, 1);
+            for side in (0..4).filter(|&side| to.sides.blocks[side]) {
+                let [a, b] = group.columns(to.columns, side);
                 group.pairs.images(unit, side, self.blocks, b, images);
                 group.multiply(unit, &[[a.all, images]], out);
-                group.scatter(side, target.blocks[side], out, values);
+                group.scatter(side, to.target.blocks[side], out, to.values);
             }
         }
     }
@@ -137,39 +97,33 @@ impl Task for SecondDerivativesTask<'_> {
 /// `Pᵀ H_w P + P′_lᵀ H P + Pᵀ Hᵀ P′_l` of all groups.
 ///
 /// Within an instant the sum is symmetric: half of it is `Pᵀ (½ H_w P + Hᵀ P′_l)`, and the other half its transpose.
-struct ContractedTask<'a> {
+struct ContractedTask<'a, 'p> {
     groups: &'a Groups,
-    ends: Ends<'a>,
     blocks: [&'a Blocks; 2],
-    sides: BlockMask,
-    place: BlockDestination<'a>,
+    to: &'a mut Pulled<'p>,
 }
 
-impl Task for ContractedTask<'_> {
+impl Task for ContractedTask<'_, '_> {
     #[inline(always)]
     fn run<S: Simd>(self, unit: S) {
-        let BlockDestination {
-            target,
-            local,
-            values,
-        } = self.place;
+        let to = self.to;
         for group in &self.groups.list {
-            let (images, out) = group.split(local, 2);
+            let (images, out) = group.split(to.local, 2);
             let (images, images_l) = images.split_at_mut(images.len() / 2);
-            for side in (0..4).filter(|&side| self.sides.blocks[side]) {
-                let (base, pairs) = (target.blocks[side], &group.pairs);
-                let [a, b] = group.columns(self.ends.columns, side);
-                let [al, bl] = group.columns(self.ends.columns_l, side);
+            for side in (0..4).filter(|&side| to.sides.blocks[side]) {
+                let (base, pairs) = (to.target.blocks[side], &group.pairs);
+                let [a, b] = group.columns(to.columns, side);
+                let [al, bl] = group.columns(to.columns_l, side);
                 if side == 0 || side == 3 {
-                    pairs.images_along(unit, side, (self.blocks, 0.5), [b, bl], images);
+                    pairs.images_along(unit, side, self.blocks, 0.5, [b, bl], images);
                     group.multiply(unit, &[[a.all, images]], out);
-                    group.scatter_transposed(side, base, out, values);
+                    group.scatter_transposed(side, base, out, to.values);
                 } else {
-                    pairs.images_along(unit, side, (self.blocks, 1.0), [b, bl], images);
+                    pairs.images_along(unit, side, self.blocks, 1.0, [b, bl], images);
                     pairs.images(unit, side, self.blocks[0], b, images_l);
                     group.multiply(unit, &[[a.all, images], [al.all, images_l]], out);
                 }
-                group.scatter(side, base, out, values);
+                group.scatter(side, base, out, to.values);
             }
         }
     }

@@ -1,9 +1,10 @@
 //! Destination of blocks: the values of an interval, or of an instant.
 
+use crate::coordinates::configuration::Configuration;
 use crate::coordinates::map::{CoordinateMap, LinearPart};
 use crate::coordinates::pattern::StepPattern;
-use crate::functional::BlockMask;
-use crate::math::Matrix;
+use crate::coordinates::pull_back::images::BlockKind;
+use crate::functional::{BlockMask, Blocks};
 
 /// Offsets of the blocks of one interval in the values: of the four blocks, of both mixed blocks and of scalars;
 /// mixed blocks and scalars without an offset (`usize::MAX`) go nowhere.
@@ -26,25 +27,66 @@ pub(in crate::coordinates) enum Site {
     Instants,
 }
 
-impl Site {
+/// The places of the entries of a site, which join the layout.
+pub(super) struct Plan<'l> {
+    pub(super) map: &'l CoordinateMap,
+    pub(super) layout: &'l mut StepPattern,
+    pub(super) site: Site,
+}
+
+impl Plan<'_> {
+    /// Places of an entry in the blocks of one instant and between neighbours; there is none of the latter (`usize::MAX`) at an instant.
+    pub(super) fn places(&mut self, row: usize, col: usize) -> [usize; 2] {
+        let cross = match self.site {
+            Site::Intervals => self.layout.cross.slot(row, col),
+            Site::Instants => usize::MAX,
+        };
+        [self.layout.same.slot(row, col), cross]
+    }
+
     /// Places of the coupling of coordinate `row` and scalar `s`: a block of its own for an interval, both triangles of
     /// (z, z) for an instant.
-    pub(super) fn mixed(
-        self,
-        layout: &mut StepPattern,
-        map: &CoordinateMap,
-        row: usize,
-        s: usize,
-    ) -> Vec<usize> {
-        match self {
-            Self::Intervals => vec![layout.mixed.slot(row, s)],
-            Self::Instants => {
-                let multiplier = map.coordinates + s;
-                vec![
-                    layout.same.slot(row, multiplier),
-                    layout.same.slot(multiplier, row),
-                ]
+    pub(super) fn mixed(&mut self, row: usize, s: usize) -> Vec<usize> {
+        match self.site {
+            Site::Intervals => vec![self.layout.mixed.slot(row, s)],
+            Site::Instants => {
+                let (multiplier, same) = (self.map.coordinates + s, &mut self.layout.same);
+                vec![same.slot(row, multiplier), same.slot(multiplier, row)]
             }
+        }
+    }
+}
+
+/// Values to which the blocks between two instants are pulled back.
+#[derive(Debug)]
+pub(in crate::coordinates) struct Pulled<'a> {
+    /// Packed columns of both instants, and their derivatives along the direction.
+    pub(super) columns: [&'a [f64]; 2],
+    pub(super) columns_l: [&'a [f64]; 2],
+    /// Blocks that are asked for.
+    pub(super) sides: BlockMask,
+    pub(super) target: &'a Destination,
+    /// Images and local matrix of one group.
+    pub(super) local: &'a mut [f64],
+    pub(super) values: &'a mut [f64],
+}
+
+impl<'a> Pulled<'a> {
+    /// Of two placed instants.
+    pub(in crate::coordinates) fn new(
+        ends: [&'a Configuration; 2],
+        sides: BlockMask,
+        target: &'a Destination,
+        local: &'a mut [f64],
+        values: &'a mut [f64],
+    ) -> Self {
+        Self {
+            columns: ends.map(|end| end.columns.as_slice()),
+            columns_l: ends.map(|end| end.columns_l.as_slice()),
+            sides,
+            target,
+            local,
+            values,
         }
     }
 }
@@ -67,28 +109,30 @@ pub(super) struct Linear {
 }
 
 impl Linear {
-    /// Adds a pair with a full block.
-    pub(super) fn add_full(
+    /// Adds a pair.
+    pub(super) fn add(
         &mut self,
+        kind: BlockKind,
         slot: usize,
         parts: [&[LinearPart]; 2],
-        layout: &mut StepPattern,
-        site: Site,
+        plan: &mut Plan<'_>,
     ) {
-        add(&mut self.full, slot, parts, layout, site, |_, _| true);
-    }
-
-    /// Adds a pair with an isotropic block.
-    pub(super) fn add_isotropic(
-        &mut self,
-        slot: usize,
-        parts: [&[LinearPart]; 2],
-        layout: &mut StepPattern,
-        site: Site,
-    ) {
-        add(&mut self.isotropic, slot, parts, layout, site, |i, j| {
-            i == j
-        });
+        let (list, is_full) = match kind {
+            BlockKind::Full => (&mut self.full, true),
+            BlockKind::Isotropic => (&mut self.isotropic, false),
+        };
+        for p in parts[0] {
+            for q in parts[1].iter().filter(|q| is_full || p.axis == q.axis) {
+                let [same, cross] = plan.places(p.coordinate, q.coordinate);
+                list.push(LinearEntry {
+                    factor: p.factor * q.factor,
+                    slot: slot as u32,
+                    same: same as u32,
+                    cross: cross as u32,
+                    entry: (p.axis as u8, q.axis as u8),
+                });
+            }
+        }
     }
 
     /// Gives back memory that further pairs would have taken.
@@ -98,51 +142,18 @@ impl Linear {
     }
 
     /// Adds the blocks to the values.
-    pub(super) fn add(
-        &self,
-        full: &[[Matrix; 4]],
-        isotropic: &[[f64; 4]],
-        sides: BlockMask,
-        target: &Destination,
-        values: &mut [f64],
-    ) {
-        for side in (0..4).filter(|&s| sides.blocks[s]) {
-            let base = target.blocks[side];
+    pub(super) fn pull(&self, blocks: &Blocks, to: &mut Pulled<'_>) {
+        for side in (0..4).filter(|&s| to.sides.blocks[s]) {
+            let base = to.target.blocks[side];
             let crosses = side == 1 || side == 2;
             let place = |e: &LinearEntry| base + if crosses { e.cross } else { e.same } as usize;
             for e in &self.full {
                 let (i, j) = (e.entry.0 as usize, e.entry.1 as usize);
-                values[place(e)] += e.factor * full[e.slot as usize][side][(i, j)];
+                to.values[place(e)] += e.factor * blocks.full[e.slot as usize][side][(i, j)];
             }
             for e in &self.isotropic {
-                values[place(e)] += e.factor * isotropic[e.slot as usize][side];
+                to.values[place(e)] += e.factor * blocks.isotropic[e.slot as usize][side];
             }
-        }
-    }
-}
-
-fn add(
-    list: &mut Vec<LinearEntry>,
-    slot: usize,
-    [s, t]: [&[LinearPart]; 2],
-    layout: &mut StepPattern,
-    site: Site,
-    couples: impl Fn(usize, usize) -> bool,
-) {
-    for p in s {
-        for q in t.iter().filter(|q| couples(p.axis, q.axis)) {
-            let (row, col) = (p.coordinate, q.coordinate);
-            let cross = match site {
-                Site::Intervals => layout.cross.slot(row, col) as u32,
-                Site::Instants => u32::MAX,
-            };
-            list.push(LinearEntry {
-                factor: p.factor * q.factor,
-                slot: slot as u32,
-                same: layout.same.slot(row, col) as u32,
-                cross,
-                entry: (p.axis as u8, q.axis as u8),
-            });
         }
     }
 }

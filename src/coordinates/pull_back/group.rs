@@ -4,8 +4,8 @@
 //! scattered once, so the cost of scattering does not grow with the number of terms. Along a chain each support begins with the
 //! one before: those that take as many columns when padded are one group, and one product.
 
-use crate::coordinates::pattern::{BlockPattern, StepPattern};
-use crate::coordinates::pull_back::destination::Site;
+use crate::coordinates::pattern::BlockPattern;
+use crate::coordinates::pull_back::destination::{Plan, Site};
 use crate::coordinates::pull_back::images::{Columns, Pairs};
 use crate::coordinates::pull_back::product::Product;
 use crate::math::compact_index;
@@ -54,12 +54,7 @@ impl Group {
     }
 
     /// Takes in pairs of these supports: their entries join the layout.
-    pub(super) fn widen(
-        &mut self,
-        supports: &[Vec<usize>; 2],
-        layout: &mut StepPattern,
-        site: Site,
-    ) {
+    pub(super) fn widen(&mut self, supports: &[Vec<usize>; 2], plan: &mut Plan<'_>) {
         let (stride, taken) = (self.stride[1], &self.taken);
         let is_taken = |i, j| taken.iter().any(|&[m, n]| i < m && j < n);
         let place = |list: &mut Vec<Scatter>, pattern: &mut BlockPattern| {
@@ -75,9 +70,9 @@ impl Group {
                 }
             }
         };
-        place(&mut self.same, &mut layout.same);
-        if site == Site::Intervals {
-            place(&mut self.cross, &mut layout.cross);
+        place(&mut self.same, &mut plan.layout.same);
+        if plan.site == Site::Intervals {
+            place(&mut self.cross, &mut plan.layout.cross);
         }
         self.taken.push([0, 1].map(|k| supports[k].len()));
         for (own, other) in self.supports.iter_mut().zip(supports) {

@@ -85,7 +85,8 @@ impl Pairs {
         &self,
         unit: S,
         side: usize,
-        ([h, hw], c): ([&Blocks; 2], f64),
+        [h, hw]: [&Blocks; 2],
+        c: f64,
         [b, bl]: [Columns<'_>; 2],
         images: &mut [f64],
     ) {

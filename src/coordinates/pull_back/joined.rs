@@ -1,12 +1,10 @@
 //! Pairs of a vector on the tree and a linear one, for elastic blocks that are glued to bodies.
 
 use crate::coordinates::map::LinearPart;
-use crate::coordinates::pattern::StepPattern;
-use crate::coordinates::pull_back::articulated::Ends;
-use crate::coordinates::pull_back::destination::{Destination, Site};
+use crate::coordinates::pull_back::destination::{Plan, Pulled};
 use crate::coordinates::pull_back::images::BlockKind;
 use crate::coordinates::tree::TangentColumns;
-use crate::functional::BlockMask;
+use crate::functional::Blocks;
 use crate::math::{Matrix, Vector};
 
 /// One entry: a column of the articulated vector against one coordinate of the linear vector.
@@ -38,21 +36,16 @@ impl Joined {
         &mut self,
         kind: BlockKind,
         [slot, transposed]: [usize; 2],
-        (packed, parts): (&TangentColumns, &[LinearPart]),
+        packed: &TangentColumns,
+        parts: &[LinearPart],
         row_is_articulated: bool,
-        layout: &mut StepPattern,
-        site: Site,
+        plan: &mut Plan<'_>,
     ) {
         for (i, &moving) in packed.support.iter().enumerate() {
             for part in parts {
-                let (row, col) = if row_is_articulated {
-                    (moving, part.coordinate)
-                } else {
-                    (part.coordinate, moving)
-                };
-                let cross = match site {
-                    Site::Intervals => layout.cross.slot(row, col),
-                    Site::Instants => usize::MAX,
+                let [same, cross] = match row_is_articulated {
+                    true => plan.places(moving, part.coordinate),
+                    false => plan.places(part.coordinate, moving),
                 };
                 let entry = JoinedEntry {
                     slot,
@@ -62,7 +55,7 @@ impl Joined {
                     stride: packed.stride,
                     axis: part.axis,
                     factor: part.factor,
-                    same: layout.same.slot(row, col),
+                    same,
                     cross,
                 };
                 match kind {
@@ -73,62 +66,27 @@ impl Joined {
         }
     }
 
-    /// Adds Pᵀ H P.
-    pub(super) fn plain(
-        &self,
-        ends: Ends<'_>,
-        full: &[[Matrix; 4]],
-        isotropic: &[[f64; 4]],
-        sides: BlockMask,
-        target: &Destination,
-        values: &mut [f64],
-    ) {
-        each(&self.full, sides, target, values, |e, side, instant| {
-            dot(ends.columns[instant], e, &line(e, &full[e.slot][side]))
-        });
-        each(
-            &self.isotropic,
-            sides,
-            target,
-            values,
-            |e, side, instant| {
-                ends.columns[instant][e.column + e.axis * e.stride] * isotropic[e.slot][side]
-            },
-        );
-    }
-
-    /// Adds Pᵀ H_w P + P′_lᵀ H P + Pᵀ Hᵀ P′_l; only the articulated vector has a P′_l.
-    pub(super) fn along(
-        &self,
-        ends: Ends<'_>,
-        full: [&[[Matrix; 4]]; 2],
-        isotropic: [&[[f64; 4]]; 2],
-        sides: BlockMask,
-        target: &Destination,
-        values: &mut [f64],
-    ) {
-        each(&self.full, sides, target, values, |e, side, instant| {
+    /// Adds Pᵀ H P, and P′_lᵀ H P + Pᵀ Hᵀ P′_l of plain blocks H, where there are any; only the articulated vector has a P′_l.
+    pub(super) fn pull(&self, h: &Blocks, plain: Option<&Blocks>, to: &mut Pulled<'_>) {
+        let (columns, columns_l) = (to.columns, to.columns_l);
+        each(&self.full, to, |e, side, instant| {
+            let value = dot(columns[instant], e, &line(e, &h.full[e.slot][side]));
+            let Some(plain) = plain else { return value };
             // The articulated vector stands in front of H in both: the block of a virtual work is unsymmetric, and Hᵀ is
             // the block of the pair in the other order, seen from the other side.
-            let h = if e.row_is_articulated {
-                &full[0][e.slot][side]
-            } else {
-                &full[0][e.transposed][2 * (side % 2) + side / 2]
+            let plain = match e.row_is_articulated {
+                true => &plain.full[e.slot][side],
+                false => &plain.full[e.transposed][2 * (side % 2) + side / 2],
             };
-            dot(ends.columns[instant], e, &line(e, &full[1][e.slot][side]))
-                + dot(ends.columns_l[instant], e, &h.column(e.axis).into())
+            value + dot(columns_l[instant], e, &plain.column(e.axis).into())
         });
-        each(
-            &self.isotropic,
-            sides,
-            target,
-            values,
-            |e, side, instant| {
-                let place = e.column + e.axis * e.stride;
-                ends.columns[instant][place] * isotropic[1][e.slot][side]
-                    + ends.columns_l[instant][place] * isotropic[0][e.slot][side]
-            },
-        );
+        each(&self.isotropic, to, |e, side, instant| {
+            let place = e.column + e.axis * e.stride;
+            let value = columns[instant][place] * h.isotropic[e.slot][side];
+            plain.map_or(value, |plain| {
+                value + columns_l[instant][place] * plain.isotropic[e.slot][side]
+            })
+        });
     }
 }
 
@@ -149,17 +107,15 @@ fn dot(columns: &[f64], e: &JoinedEntry, v: &Vector) -> f64 {
 /// Adds `value(entry, side, instant of the articulated vector)` for all sides that are asked for.
 fn each(
     list: &[JoinedEntry],
-    sides: BlockMask,
-    target: &Destination,
-    values: &mut [f64],
+    to: &mut Pulled<'_>,
     value: impl Fn(&JoinedEntry, usize, usize) -> f64,
 ) {
-    for side in (0..4).filter(|&s| sides.blocks[s]) {
+    for side in (0..4).filter(|&s| to.sides.blocks[s]) {
         let (row, col) = (side / 2, side % 2);
         for e in list {
             let instant = if e.row_is_articulated { row } else { col };
             let place = if row == col { e.same } else { e.cross };
-            values[target.blocks[side] + place] += e.factor * value(e, side, instant);
+            to.values[to.target.blocks[side] + place] += e.factor * value(e, side, instant);
         }
     }
 }

@@ -1,9 +1,7 @@
 //! Vectors against scalars.
 
-use crate::coordinates::map::{CoordinateMap, Dependence};
-use crate::coordinates::pattern::StepPattern;
-use crate::coordinates::pull_back::destination::{Destination, Site};
-use crate::functional::SumDerivatives;
+use crate::coordinates::map::Dependence;
+use crate::coordinates::pull_back::destination::{Plan, Pulled};
 use crate::math::{Vector, compact_index};
 
 /// One entry of a vector against a scalar; compact, since a mesh with potentials has millions.
@@ -31,21 +29,14 @@ pub(super) struct Mixed {
 
 impl Mixed {
     /// Adds the coupling of a vector and scalar s.
-    pub(super) fn add(
-        &mut self,
-        slot: usize,
-        vector: usize,
-        s: usize,
-        map: &CoordinateMap,
-        layout: &mut StepPattern,
-        site: Site,
-    ) {
-        match &map.vectors[vector] {
+    pub(super) fn add(&mut self, slot: usize, vector: usize, s: usize, plan: &mut Plan<'_>) {
+        let slot = compact_index(slot);
+        match &plan.map.vectors[vector] {
             Dependence::Articulated(packed) => {
                 for (i, &row) in packed.support.iter().enumerate() {
-                    for place in site.mixed(layout, map, row, s) {
+                    for place in plan.mixed(row, s) {
                         self.list.push(MixedEntry::Articulated {
-                            slot: compact_index(slot),
+                            slot,
                             column: compact_index(packed.first + i),
                             stride: compact_index(packed.stride),
                             place: compact_index(place),
@@ -55,9 +46,9 @@ impl Mixed {
             }
             Dependence::Linear { parts, .. } => {
                 for part in parts {
-                    for place in site.mixed(layout, map, part.coordinate, s) {
+                    for place in plan.mixed(part.coordinate, s) {
                         self.list.push(MixedEntry::Linear {
-                            slot: compact_index(slot),
+                            slot,
                             factor: part.factor,
                             component: part.axis as u8,
                             place: compact_index(place),
@@ -73,83 +64,37 @@ impl Mixed {
         self.list.shrink_to_fit();
     }
 
-    /// Adds Pᵀ m of both instants.
-    pub(super) fn plain(
+    /// Adds Pᵀ m of both instants, and P′_lᵀ m of plain blocks m, where there are any.
+    pub(super) fn pull(
         &self,
-        columns: [&[f64]; 2],
-        part: &SumDerivatives,
-        target: &Destination,
-        values: &mut [f64],
+        m: &[[Vector; 2]],
+        plain: Option<&[[Vector; 2]]>,
+        to: &mut Pulled<'_>,
     ) {
-        self.each(target, values, |entry, side| match *entry {
-            MixedEntry::Articulated {
-                slot,
-                column,
-                stride,
-                ..
-            } => dot(
-                columns[side],
-                column,
-                stride,
-                &part.blocks.mixed[slot as usize][side],
-            ),
-            MixedEntry::Linear {
-                slot,
-                factor,
-                component,
-                ..
-            } => factor * part.blocks.mixed[slot as usize][side][component as usize],
-        });
-    }
-
-    /// Adds Pᵀ m_w + P′_lᵀ m of both instants.
-    pub(super) fn along(
-        &self,
-        columns: [&[f64]; 2],
-        columns_l: [&[f64]; 2],
-        [plain, contracted]: [&SumDerivatives; 2],
-        target: &Destination,
-        values: &mut [f64],
-    ) {
-        self.each(target, values, |entry, side| match *entry {
-            MixedEntry::Articulated {
-                slot,
-                column,
-                stride,
-                ..
-            } => {
-                dot(
-                    columns[side],
-                    column,
-                    stride,
-                    &contracted.blocks.mixed[slot as usize][side],
-                ) + dot(
-                    columns_l[side],
-                    column,
-                    stride,
-                    &plain.blocks.mixed[slot as usize][side],
-                )
-            }
-            MixedEntry::Linear {
-                slot,
-                factor,
-                component,
-                ..
-            } => factor * contracted.blocks.mixed[slot as usize][side][component as usize],
-        });
-    }
-
-    fn each(
-        &self,
-        target: &Destination,
-        values: &mut [f64],
-        value: impl Fn(&MixedEntry, usize) -> f64,
-    ) {
-        for side in (0..2).filter(|&side| target.mixed[side] != usize::MAX) {
+        for side in (0..2).filter(|&side| to.target.mixed[side] != usize::MAX) {
             for entry in &self.list {
-                let (MixedEntry::Articulated { place, .. } | MixedEntry::Linear { place, .. }) =
-                    *entry;
-                values[target.mixed[side] + place as usize] += value(entry, side);
+                let (place, value) = match *entry {
+                    MixedEntry::Articulated {
+                        slot,
+                        column,
+                        stride,
+                        place,
+                    } => {
+                        let along = |columns: [&[f64]; 2], m: &[[Vector; 2]]| {
+                            dot(columns[side], column, stride, &m[slot as usize][side])
+                        };
+                        let value = along(to.columns, m);
+                        let more = plain.map(|plain| along(to.columns_l, plain));
+                        (place, more.map_or(value, |more| value + more))
+                    }
+                    MixedEntry::Linear {
+                        slot,
+                        factor,
+                        component,
+                        place,
+                    } => (place, factor * m[slot as usize][side][component as usize]),
+                };
+                to.values[to.target.mixed[side] + place as usize] += value;
             }
         }
     }

@@ -8,15 +8,14 @@ mod joined;
 mod mixed;
 mod product;
 
-use crate::coordinates::configuration::Configuration;
 use crate::coordinates::map::{CoordinateMap, Dependence};
 use crate::coordinates::pattern::StepPattern;
 use crate::functional::{BlockMask, Couplings, Order, Output, SumDerivatives};
 use crate::math::compact_index;
-use articulated::{BlockDestination, Ends, Groups};
+use articulated::Groups;
 pub use destination::Destination;
-use destination::Linear;
-pub(super) use destination::Site;
+use destination::{Linear, Plan};
+pub(super) use destination::{Pulled, Site};
 use images::BlockKind;
 use joined::Joined;
 use mixed::Mixed;
@@ -41,26 +40,28 @@ impl PullBack {
         layout: &mut StepPattern,
         site: Site,
     ) -> Self {
-        let mut plan = Self::default();
+        let mut own = Self::default();
+        let plan = &mut Plan { map, layout, site };
         for (slot, &pair) in couplings.full.iter().enumerate() {
             let slots = [slot, couplings.transposed_full(slot)];
-            plan.pair(BlockKind::Full, slots, pair, map, layout, site);
+            own.pair(BlockKind::Full, slots, pair, plan);
         }
         for (slot, &pair) in couplings.isotropic.iter().enumerate() {
             let slots = [slot, couplings.transposed_isotropic(slot)];
-            plan.pair(BlockKind::Isotropic, slots, pair, map, layout, site);
+            own.pair(BlockKind::Isotropic, slots, pair, plan);
         }
         for (slot, &(a, s)) in couplings.mixed.iter().enumerate() {
-            plan.mixed.add(slot, a, s, map, layout, site);
+            own.mixed.add(slot, a, s, plan);
         }
-        plan.linear.shrink_to_fit();
-        plan.mixed.shrink_to_fit();
+        own.linear.shrink_to_fit();
+        own.mixed.shrink_to_fit();
         if site == Site::Intervals {
-            let place =
-                |(slot, &(s, t)): (usize, &(usize, usize))| (slot, layout.scalars.slot(s, t));
-            plan.scalars = couplings.scalars.iter().enumerate().map(place).collect();
+            let scalars = couplings.scalars.iter().enumerate();
+            own.scalars = scalars
+                .map(|(slot, &(s, t))| (slot, plan.layout.scalars.slot(s, t)))
+                .collect();
         }
-        plan
+        own
     }
 
     /// Plans the block of one pair of vectors.
@@ -69,31 +70,27 @@ impl PullBack {
         kind: BlockKind,
         slots: [usize; 2],
         (a, b): (usize, usize),
-        map: &CoordinateMap,
-        layout: &mut StepPattern,
-        site: Site,
+        plan: &mut Plan<'_>,
     ) {
         use Dependence::{Articulated, Linear};
         let [slot, transposed] = slots;
-        match (&map.vectors[a], &map.vectors[b]) {
+        match (&plan.map.vectors[a], &plan.map.vectors[b]) {
             (Articulated(a), Articulated(b)) => {
                 let pair = Pair {
                     slot: compact_index(slot),
                     transposed: compact_index(transposed),
                     first: [compact_index(a.first), compact_index(b.first)],
                 };
-                self.articulated.add(kind, pair, [a, b], layout, site);
+                self.articulated.add(kind, pair, [a, b], plan);
             }
-            (Linear { parts: s, .. }, Linear { parts: t, .. }) => match kind {
-                BlockKind::Full => self.linear.add_full(slot, [s, t], layout, site),
-                BlockKind::Isotropic => self.linear.add_isotropic(slot, [s, t], layout, site),
-            },
+            (Linear { parts: s, .. }, Linear { parts: t, .. }) => {
+                self.linear.add(kind, slot, [s, t], plan);
+            }
             (Articulated(a), Linear { parts, .. }) => {
-                self.joined.add(kind, slots, (a, parts), true, layout, site);
+                self.joined.add(kind, slots, a, parts, true, plan);
             }
             (Linear { parts, .. }, Articulated(b)) => {
-                self.joined
-                    .add(kind, slots, (b, parts), false, layout, site);
+                self.joined.add(kind, slots, b, parts, false, plan);
             }
         }
     }
@@ -104,100 +101,43 @@ impl PullBack {
     }
 
     /// Adds second derivatives up to an order: ∇², or the lower blocks of ∇³ along the direction.
-    pub(super) fn add(
-        &self,
-        order: Order,
-        ends: [&Configuration; 2],
-        out: &Output,
-        sides: BlockMask,
-        target: &Destination,
-        [local, values]: [&mut [f64]; 2],
-    ) {
-        let (plain, contracted) = (&out.plain, &out.contracted);
+    pub(super) fn add(&self, order: Order, out: &Output, to: &mut Pulled<'_>) {
         match order {
-            Order::Third => self.third(ends, [plain, contracted], sides, target, local, values),
-            _ => self.hessian(ends, plain, sides, target, local, values),
+            Order::Third => self.third(&out.plain, &out.contracted, to),
+            _ => self.hessian(&out.plain, to),
         }
     }
 
     /// Adds Pᵀ H P.
-    pub(super) fn hessian(
-        &self,
-        ends: [&Configuration; 2],
-        part: &SumDerivatives,
-        sides: BlockMask,
-        target: &Destination,
-        local: &mut [f64],
-        values: &mut [f64],
-    ) {
-        let (columns, columns_l) = columns(ends);
-        let (ends, blocks) = (Ends { columns, columns_l }, &part.blocks);
-        let place = BlockDestination {
-            target,
-            local,
-            values,
-        };
-        self.articulated.hessian(ends, blocks, sides, place);
-        self.linear
-            .add(&blocks.full, &blocks.isotropic, sides, target, values);
-        self.joined
-            .plain(ends, &blocks.full, &blocks.isotropic, sides, target, values);
-        self.mixed.plain(columns, part, target, values);
-        if target.scalars != usize::MAX {
-            for &(slot, place) in &self.scalars {
-                values[target.scalars + place] += blocks.scalars[slot];
-            }
+    pub(super) fn hessian(&self, part: &SumDerivatives, to: &mut Pulled<'_>) {
+        let h = &part.blocks;
+        self.articulated.hessian(h, to);
+        self.linear.pull(h, to);
+        self.joined.pull(h, None, to);
+        self.mixed.pull(&h.mixed, None, to);
+        if to.target.scalars != usize::MAX {
+            self.scalars(&h.scalars, to);
         }
     }
 
     /// Adds the lower blocks of `Pᵀ H_w P + P′_lᵀ H P + Pᵀ Hᵀ P′_l`.
-    fn third(
-        &self,
-        ends: [&Configuration; 2],
-        [plain, contracted]: [&SumDerivatives; 2],
-        sides: BlockMask,
-        target: &Destination,
-        local: &mut [f64],
-        values: &mut [f64],
-    ) {
-        let (columns, columns_l) = columns(ends);
-        let lower = BlockMask {
-            blocks: [sides.blocks[0], false, sides.blocks[2], sides.blocks[3]],
-            ..sides
+    fn third(&self, plain: &SumDerivatives, contracted: &SumDerivatives, to: &mut Pulled<'_>) {
+        let [a, _, c, d] = to.sides.blocks;
+        to.sides = BlockMask {
+            blocks: [a, false, c, d],
+            ..to.sides
         };
-        let (ends, h, hw) = (
-            Ends { columns, columns_l },
-            &plain.blocks,
-            &contracted.blocks,
-        );
-        let place = BlockDestination {
-            target,
-            local,
-            values,
-        };
-        self.articulated.third(ends, [h, hw], lower, place);
-        self.linear
-            .add(&hw.full, &hw.isotropic, lower, target, values);
-        self.joined.along(
-            ends,
-            [&h.full, &hw.full],
-            [&h.isotropic, &hw.isotropic],
-            lower,
-            target,
-            values,
-        );
-        self.mixed
-            .along(columns, columns_l, [plain, contracted], target, values);
+        let (h, hw) = (&plain.blocks, &contracted.blocks);
+        self.articulated.third([h, hw], to);
+        self.linear.pull(hw, to);
+        self.joined.pull(hw, Some(h), to);
+        self.mixed.pull(&hw.mixed, Some(&h.mixed), to);
+        self.scalars(&hw.scalars, to);
+    }
+
+    fn scalars(&self, of: &[f64], to: &mut Pulled<'_>) {
         for &(slot, place) in &self.scalars {
-            values[target.scalars + place] += hw.scalars[slot];
+            to.values[to.target.scalars + place] += of[slot];
         }
     }
-}
-
-/// Columns of both instants, and their derivatives along l.
-fn columns(ends: [&Configuration; 2]) -> ([&[f64]; 2], [&[f64]; 2]) {
-    (
-        ends.map(|e| e.columns.as_slice()),
-        ends.map(|e| e.columns_l.as_slice()),
-    )
 }
