@@ -32,31 +32,49 @@ impl<L, const M: usize, const NV: usize, const NS: usize> fmt::Debug for Laws<L,
 /// The formula over plain numbers.
 type Plain<L, const M: usize> = <L as Law<M>>::Formula<f64>;
 
-impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV, NS> {
+/// An element at a sample, with its parameters.
+struct Evaluation<'a, L, const M: usize, const NV: usize, const NS: usize> {
+    element: &'a LawElement<L, NV, NS>,
+    order: Order,
+    sample: &'a Sample<'a>,
+    values: Values<f64>,
+}
+
+impl<'a, L: Law<M>, const M: usize, const NV: usize, const NS: usize> Evaluation<'a, L, M, NV, NS> {
     /// Number of vectors of the formula.
     const BASE: usize = NV / Plain::<L, M>::READINGS;
     /// Leading arguments of the formula that are virtual displacements.
     const VIRTUAL: usize = Plain::<L, M>::VIRTUAL;
 
-    fn values(element: &LawElement<L, NV, NS>, sample: &Sample<'_>) -> Values<f64> {
+    fn new(element: &'a LawElement<L, NV, NS>, order: Order, sample: &'a Sample<'a>) -> Self {
         let mut values = [0.0; MOST_PARAMETERS];
         for (value, &scalar) in values.iter_mut().zip(&element.parameters) {
             *value = sample.scalars[scalar];
         }
-        values
+        Self {
+            element,
+            order,
+            sample,
+            values,
+        }
+    }
+
+    fn parameters(&self) -> &[f64] {
+        &self.values[..self.element.parameters.len()]
     }
 
     /// Vectors of the formula at parameters, each of what `read` reads.
     #[inline(always)]
     fn moved<T: Number>(
-        element: &LawElement<L, NV, NS>,
+        &self,
         parameters: &[T],
         read: impl Fn(usize, VectorArg) -> Vector,
     ) -> SVector<T, M> {
         let mut p = SVector::<T, M>::zeros();
-        for (i, &arg) in element.vectors.iter().enumerate() {
+        for (i, &arg) in self.element.vectors.iter().enumerate() {
             let mut value: Vector3<T> = read(i, arg).map(T::of);
-            for one in element.moves.iter().filter(|one| one.of == i % Self::BASE) {
+            let moves = self.element.moves.iter();
+            for one in moves.filter(|one| one.of == i % Self::BASE) {
                 let along = read(i, arg.stencil.of(one.vector));
                 value += along.map(T::of) * parameters[one.parameter].shifted(-one.at);
             }
@@ -67,21 +85,15 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
 
     /// Arguments of the formula at a sample; a virtual displacement takes the direction.
     #[inline(always)]
-    fn point<T: Number>(
-        element: &LawElement<L, NV, NS>,
-        order: Order,
-        sample: &Sample<'_>,
-        parameters: &[T],
-    ) -> SVector<T, M> {
+    fn point<T: Number>(&self, parameters: &[T]) -> SVector<T, M> {
         const { assert!(M == 3 * NV + NS && Self::VIRTUAL.is_multiple_of(Self::BASE)) };
-        let mut p = Self::moved(element, parameters, |i, arg| {
-            match (i < Self::VIRTUAL, order) {
-                (false, _) => arg.read(sample.h, sample.vectors),
-                (true, Order::Third) => arg.read(sample.h, sample.along),
-                (true, _) => Vector::zeros(),
-            }
+        let sample = self.sample;
+        let mut p = self.moved(parameters, |i, arg| match (i < Self::VIRTUAL, self.order) {
+            (false, _) => arg.read(sample.h, sample.vectors),
+            (true, Order::Third) => arg.read(sample.h, sample.along),
+            (true, _) => Vector::zeros(),
         });
-        for (i, &s) in element.scalars.iter().enumerate() {
+        for (i, &s) in self.element.scalars.iter().enumerate() {
             p[3 * NV + i] = T::of(sample.scalars[s]);
         }
         p
@@ -89,14 +101,10 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
 
     /// Rates of the arguments along the direction, where the formula is no virtual work.
     #[inline(always)]
-    fn direction<T: Number>(
-        element: &LawElement<L, NV, NS>,
-        sample: &Sample<'_>,
-        parameters: &[T],
-    ) -> SVector<T, M> {
-        let read = |_, arg: VectorArg| arg.read(sample.h, sample.along);
-        let mut w = Self::moved(element, parameters, read);
-        for (i, &s) in element.scalars.iter().enumerate() {
+    fn direction<T: Number>(&self, parameters: &[T]) -> SVector<T, M> {
+        let sample = self.sample;
+        let mut w = self.moved(parameters, |_, arg| arg.read(sample.h, sample.along));
+        for (i, &s) in self.element.scalars.iter().enumerate() {
             w[3 * NV + i] = T::of(sample.scalars_along[s]);
         }
         w
@@ -104,18 +112,14 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
 
     /// Fills first derivatives by the seeded parameter, and where the contraction is asked for, those of it.
     fn first<const ORDER: usize>(
-        element: &LawElement<L, NV, NS>,
-        order: Order,
-        sample: &Sample<'_>,
+        &self,
         seeded: &[Dual<f64>],
         plain: &mut ByParameter<NV, NS>,
         along: Option<&mut ByParameter<NV, NS>>,
     ) {
-        let p = Self::point(element, order, sample, seeded);
-        let local = element
-            .law
-            .formula(seeded)
-            .at::<ORDER>(&p, &SVector::zeros());
+        let p = self.point(seeded);
+        let formula = self.element.law.formula(seeded);
+        let local = formula.at::<ORDER>(&p, &SVector::zeros());
         let d = local.plain::<NV>();
         plain.row = local.value().part;
         for i in 0..NV {
@@ -127,7 +131,7 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
         let Some(along) = along else {
             return;
         };
-        let w = Self::direction(element, sample, seeded);
+        let w = self.direction(seeded);
         let vector = |i: usize| -> Vector3<Dual<f64>> { w.fixed_rows::<3>(3 * i).into() };
         for i in 0..NV {
             let mut turned = Vector3::<Dual<f64>>::zeros();
@@ -154,19 +158,18 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
 
     /// Fills the second derivative by the seeded parameters, `b` one of them, and where it is asked for, that of the contraction.
     fn second(
-        element: &LawElement<L, NV, NS>,
-        order: Order,
-        sample: &Sample<'_>,
+        &self,
         b: usize,
         seeded: &[HyperDual],
         plain: &mut ByParameter<NV, NS>,
         along: Option<&mut ByParameter<NV, NS>>,
     ) {
-        let p = Self::point(element, order, sample, seeded);
-        let local = element.law.formula(seeded).at::<1>(&p, &SVector::zeros());
+        let p = self.point(seeded);
+        let formula = self.element.law.formula(seeded);
+        let local = formula.at::<1>(&p, &SVector::zeros());
         plain.entries[b] = local.value().part.part;
         if let Some(along) = along {
-            let w = Self::direction(element, sample, seeded);
+            let w = self.direction(seeded);
             let value = contraction::<_, _, NV, NS, M>(&local.plain::<NV>(), &w);
             along.entries[b] = value.part.part;
         }
@@ -174,45 +177,38 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
 
     /// Fills all derivatives by parameters, those by two of them where `pairs` are asked for.
     fn by_parameters(
-        element: &LawElement<L, NV, NS>,
-        order: Order,
-        sample: &Sample<'_>,
+        &self,
         pairs: bool,
-        values: &Values<f64>,
         plain: &mut [ByParameter<NV, NS>],
         mut along: Option<&mut [ByParameter<NV, NS>]>,
     ) {
-        let count = element.parameters.len();
+        let count = self.element.parameters.len();
         for (a, plain) in plain.iter_mut().enumerate() {
-            let mut seeded = values.map(Dual::of);
+            let mut seeded = self.values.map(Dual::of);
             seeded[a].part = 1.0;
             let seeds = &seeded[..count];
             match along.as_deref_mut() {
-                None => Self::first::<1>(element, order, sample, seeds, plain, None),
-                Some(along) => {
-                    let along = Some(&mut along[a]);
-                    Self::first::<2>(element, order, sample, seeds, plain, along);
-                }
+                None => self.first::<1>(seeds, plain, None),
+                Some(along) => self.first::<2>(seeds, plain, Some(&mut along[a])),
             }
             for b in (0..=a).filter(|_| pairs) {
-                let mut seeded = values.map(HyperDual::of);
+                let mut seeded = self.values.map(HyperDual::of);
                 seeded[a].value.part = 1.0;
                 seeded[b].part.value = 1.0;
                 let along = along.as_deref_mut().map(|along| &mut along[a]);
-                Self::second(element, order, sample, b, &seeded[..count], plain, along);
+                self.second(b, &seeded[..count], plain, along);
             }
         }
     }
 
-    fn of_element<'a, D: Derivatives>(
-        element: &'a LawElement<L, NV, NS>,
-        values: &'a Values<f64>,
+    fn of_element<'e, D: Derivatives>(
+        &'e self,
         formula: D,
-        by: &'a [ByParameter<NV, NS>],
-    ) -> OfElement<'a, D, L, NV, NS> {
+        by: &'e [ByParameter<NV, NS>],
+    ) -> OfElement<'e, D, L, NV, NS> {
         OfElement {
-            element,
-            values,
+            element: self.element,
+            values: &self.values,
             base: Self::BASE,
             couples: Plain::<L, M>::couples,
             formula,
@@ -223,24 +219,21 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
     /// Derivatives up to an order: of the formula by its arguments, and by parameters where `of_parameters` alone or the sample asks for them.
     /// It knows no receiver, so that it is compiled once for all.
     fn evaluated<const ORDER: usize>(
-        element: &LawElement<L, NV, NS>,
-        order: Order,
-        sample: &Sample<'_>,
+        &self,
         of_parameters: bool,
-        values: &Values<f64>,
         [by, by_along]: [&mut ByParameters<NV, NS>; 2],
     ) -> <Plain<L, M> as Energy<M>>::Local<ORDER> {
-        let parameters = &values[..element.parameters.len()];
-        let p = Self::point(element, order, sample, parameters);
+        let (order, parameters) = (self.order, self.parameters());
+        let p = self.point(parameters);
         let w = match const { ORDER == 3 } {
-            true => Self::direction(element, sample, parameters),
+            true => self.direction(parameters),
             false => SVector::zeros(),
         };
         by.resize(parameters.len(), ByParameter::ZERO);
         if const { ORDER == 3 } {
             by_along.resize(parameters.len(), ByParameter::ZERO);
         }
-        let asked = sample.sides.parameters;
+        let asked = self.sample.sides.parameters;
         if of_parameters || (order > Order::Gradient && asked != ParameterOrder::None) {
             let pairs = match order {
                 Order::Gradient => false,
@@ -248,31 +241,22 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Laws<L, M, NV,
                 Order::Third => asked == ParameterOrder::Second,
             };
             let along = const { ORDER == 3 }.then_some(&mut by_along[..]);
-            Self::by_parameters(element, order, sample, pairs, values, by, along);
+            self.by_parameters(pairs, by, along);
         }
-        element.law.formula(parameters).at::<ORDER>(&p, &w)
+        self.element.law.formula(parameters).at::<ORDER>(&p, &w)
     }
 
-    fn hand<const ORDER: usize, S: Scatter>(
-        element: &LawElement<L, NV, NS>,
-        order: Order,
-        sample: &Sample<'_>,
-        to: &mut S,
-    ) {
-        let values = Self::values(element, sample);
+    fn hand<const ORDER: usize, S: Scatter>(&self, to: &mut S) {
         let (mut by, mut by_along) = (ByParameters::new(), ByParameters::new());
-        let both = [&mut by, &mut by_along];
-        let is_asked = S::OF_PARAMETERS;
-        let local = Self::evaluated::<ORDER>(element, order, sample, is_asked, &values, both);
-        let plain = Self::of_element(element, &values, local.plain::<NV>(), &by);
+        let local = self.evaluated::<ORDER>(S::OF_PARAMETERS, [&mut by, &mut by_along]);
+        let plain = self.of_element(local.plain::<NV>(), &by);
         if const { ORDER == 1 } {
             return to.plain(&Gradient(&plain));
         }
         to.plain(&plain);
         if const { ORDER == 3 } {
-            let along = Self::of_element(element, &values, local.along::<NV>(), &by_along);
-            to.along(&plain, &along);
-        } else if const { ORDER == 2 && Self::VIRTUAL > 0 } && order == Order::Third {
+            to.along(&plain, &self.of_element(local.along::<NV>(), &by_along));
+        } else if const { ORDER == 2 && Self::VIRTUAL > 0 } && self.order == Order::Third {
             // At δx = w the virtual work itself is the contraction with the costates.
             to.along(&plain, &plain);
         }
@@ -289,11 +273,12 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Kernel for Law
     const ISOTROPIC: bool = Plain::<L, M>::ISOTROPIC;
 
     fn virtuals(element: &Self::Element) -> usize {
-        Self::VIRTUAL.checked_div(Self::BASE).unwrap_or(0) * Self::vectors(element)
+        let readings = Self::VIRTUAL.checked_div(Evaluation::<L, M, NV, NS>::BASE);
+        readings.unwrap_or(0) * Self::vectors(element)
     }
 
     fn vectors(element: &Self::Element) -> usize {
-        Self::BASE + element.moves.len()
+        Evaluation::<L, M, NV, NS>::BASE + element.moves.len()
     }
 
     fn scalars(element: &Self::Element) -> usize {
@@ -302,12 +287,12 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Kernel for Law
 
     fn vector(element: &Self::Element, i: usize) -> VectorArg {
         let vectors = Self::vectors(element);
-        let (reading, a) = (i / vectors, i % vectors);
-        match a.checked_sub(Self::BASE) {
-            None => element.vectors[reading * Self::BASE + a],
+        let (reading, a, base) = (i / vectors, i % vectors, Evaluation::<L, M, NV, NS>::BASE);
+        match a.checked_sub(base) {
+            None => element.vectors[reading * base + a],
             Some(moved) => {
                 let Move { of, vector, .. } = element.moves[moved];
-                let VectorArg { stencil, .. } = element.vectors[reading * Self::BASE + of];
+                let VectorArg { stencil, .. } = element.vectors[reading * base + of];
                 VectorArg { vector, stencil }
             }
         }
@@ -322,9 +307,9 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Kernel for Law
     }
 
     fn energy(element: &Self::Element, sample: &Sample<'_>) -> f64 {
-        let values = Self::values(element, sample);
-        let parameters = &values[..element.parameters.len()];
-        let mut p = Self::moved(element, parameters, |i, arg| match i < Self::VIRTUAL {
+        let at = Evaluation::<L, M, NV, NS>::new(element, Order::Gradient, sample);
+        let parameters = at.parameters();
+        let mut p = at.moved(parameters, |i, arg| match i < Self::VIRTUAL {
             true => sample.vectors[1][arg.vector] - sample.vectors[0][arg.vector],
             false => arg.read(sample.h, sample.vectors),
         });
@@ -343,16 +328,17 @@ impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Kernel for Law
         to: &mut S,
     ) {
         debug_assert!(S::receives(order));
+        let at = Evaluation::<L, M, NV, NS>::new(element, order, sample);
         if const { matches!(S::ORDER, Some(Order::Gradient)) } {
-            Self::hand::<1, S>(element, order, sample, to);
+            at.hand::<1, S>(to);
         } else if const { matches!(S::ORDER, Some(Order::Hessian)) } {
-            Self::hand::<2, S>(element, order, sample, to);
+            at.hand::<2, S>(to);
         } else if order == Order::Gradient {
-            Self::hand::<1, S>(element, order, sample, to);
+            at.hand::<1, S>(to);
         } else if const { Self::VIRTUAL > 0 } || order == Order::Hessian {
-            Self::hand::<2, S>(element, order, sample, to);
+            at.hand::<2, S>(to);
         } else {
-            Self::hand::<3, S>(element, order, sample, to);
+            at.hand::<3, S>(to);
         }
     }
 }
