@@ -5,7 +5,7 @@ use crate::functional::Mass;
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
 use crate::model::constants::constant::Constant;
-use crate::model::constants::free_parameters::{MovedPoint, Read};
+use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::system::{Attachment, Body};
 use crate::model::terms::{GRAVITY, Terms, mid, rate, weight};
 
@@ -54,12 +54,12 @@ pub(in crate::model) fn build_sought(bodies: &[Body], terms: &mut Terms<'_>) {
             continue;
         }
         let mut moved = terms.sought().read();
-        let centre = MovedPoint {
-            weight: 1.0,
-            body: terms.carrier(&place),
-            place: Some(&|axis| Constant::BodyPlace(b, axis)),
+        let centre = MovedPoints {
+            parts: [1.0],
+            bodies: [terms.carrier(&place)],
+            places: Some(&|_, axis| Constant::BodyPlace(b, axis)),
         };
-        moved.moves(0, [centre], |vector| terms.vector(vector));
+        moved.moves(0, centre, |vector| terms.vector(vector));
         let still = terms.sought().read();
         let more = |read: &mut Read| Sought::new(b, body, read).mass;
         if !moved.is_empty() {

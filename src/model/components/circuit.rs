@@ -32,9 +32,7 @@ pub(in crate::model) fn build(
         true => "no muscle or electrode names a circuit with a resistor",
         false => "at rest no charge flows",
     };
-    for term in [SOURCES, RESISTANCE] {
-        terms.without(term, none);
-    }
+    terms.without_each([SOURCES, RESISTANCE], none);
 }
 
 /// The electric energy of a charge, which is an internal coordinate, the source, and the resistor as its damper.

@@ -51,13 +51,12 @@ pub(in crate::model) fn build(
         [MAXWELL_ELASTICITY, MAXWELL_VISCOSITY],
         "no lumped muscle that moves names a Maxwell branch",
     );
-    for term in GENERAL {
-        terms.without(term, "no lumped muscle names a law of elasticity");
-    }
+    terms.without_each(GENERAL, "no lumped muscle names a law of elasticity");
     // What no muscle has said.
-    for term in [INERTIA, SECTION, ELASTICITY, ELECTROELASTICITY, VISCOSITY] {
-        terms.without(term, "no lumped muscle");
-    }
+    terms.without_each(
+        [INERTIA, SECTION, ELASTICITY, ELECTROELASTICITY, VISCOSITY],
+        "no lumped muscle",
+    );
 }
 
 /// Between two points that do not move nothing is left of a muscle without voltage.
@@ -66,9 +65,10 @@ fn lumped(muscle: &Muscle, source: usize, span: usize, terms: &mut Terms<'_>) {
     let is_direct = !muscle.is_behind_resistor() || !terms.is_of_motion();
     let input = terms.input(source).filter(|_| is_direct);
     if input.is_none() && terms.is_immobile(&[muscle.from, muscle.to]) {
-        for term in [INERTIA, SECTION, ELASTICITY, ELECTROELASTICITY, VISCOSITY] {
-            terms.without(term, "no lumped muscle that moves");
-        }
+        terms.without_each(
+            [INERTIA, SECTION, ELASTICITY, ELECTROELASTICITY, VISCOSITY],
+            "no lumped muscle that moves",
+        );
         return;
     }
     inertia(muscle, source, span, terms);
@@ -84,9 +84,10 @@ fn lumped(muscle: &Muscle, source: usize, span: usize, terms: &mut Terms<'_>) {
             let mut constants = constants.clone();
             let law = constants.law(law);
             elasticity(&constants, law, GENERAL, input, span, terms);
-            for term in [ELASTICITY, ELECTROELASTICITY] {
-                terms.without(term, "every lumped muscle names a law of elasticity");
-            }
+            terms.without_each(
+                [ELASTICITY, ELECTROELASTICITY],
+                "every lumped muscle names a law of elasticity",
+            );
         }
     }
     viscosity(&constants, span, terms);
@@ -132,9 +133,7 @@ fn inertia(muscle: &Muscle, index: usize, span: usize, terms: &mut Terms<'_>) {
         false => sought_weight(muscle, index, &middle, terms),
     }
     if !terms.is_of_motion() {
-        for term in [INERTIA, SECTION] {
-            terms.without(term, "a state of rest has no inertia");
-        }
+        terms.without_each([INERTIA, SECTION], "a state of rest has no inertia");
         return;
     }
     let middle = terms.vector(middle);

@@ -9,7 +9,7 @@ use crate::functional::{LawElement, VectorArg};
 use crate::kinematics::MaterialVector;
 use crate::math::Vector;
 use crate::model::constants::constant::{Constant, MaterialConstant};
-use crate::model::constants::free_parameters::{MovedPoint, Read};
+use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::system::maxwell::MaxwellBranch;
 use crate::model::system::{ElectricConstants, Fidelity, Muscle};
 use crate::model::terms::{Terms, weight};
@@ -48,12 +48,11 @@ impl<'a> MuscleConstants<'a> {
     ) -> Self {
         let at_rest = muscle.to.at - muscle.from.at;
         let mut span = [at_rest.x, at_rest.y, at_rest.z].map(Coefficient::from);
-        let places = [0, 1].map(|end| move |axis| Constant::End(index, end, axis));
-        let ends = [0, 1].map(|end| MovedPoint {
-            weight: parts[end],
-            body: bodies[end],
-            place: Some(&places[end]),
-        });
+        let ends = MovedPoints {
+            parts,
+            bodies,
+            places: Some(&|end, axis| Constant::End(index, end, axis)),
+        };
         for (place, at, [from, to]) in read.moves(0, ends, vector) {
             for (component, &slope) in span.iter_mut().zip((to - from).iter()) {
                 if slope != 0.0 {

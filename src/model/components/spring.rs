@@ -4,7 +4,7 @@ use crate::energy::{LinearSpring, SpanDamper};
 use crate::math::{Fault, not_negative, rule};
 use crate::model::components::component::{Component, Kind};
 use crate::model::constants::constant::Constant;
-use crate::model::constants::free_parameters::{MovedPoint, Read};
+use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::system::bodies::Attachment;
 use crate::model::terms::{Terms, mid, rate};
 use nalgebra::Vector3;
@@ -37,9 +37,7 @@ impl Spring {
     /// Makes the terms; `index` is its place among the springs of the system, constants of which can be free.
     fn add(&self, index: Option<usize>, terms: &mut Terms<'_>) {
         let Some(span) = terms.span(&self.from, &self.to) else {
-            for term in [ELASTICITY, DAMPING] {
-                terms.without(term, "no spring that moves");
-            }
+            terms.without_each([ELASTICITY, DAMPING], "no spring that moves");
             return;
         };
         let mut nothing = match index {
@@ -47,12 +45,11 @@ impl Spring {
             None => Read::nothing(),
         };
         let index = index.unwrap_or_default();
-        let places = [0, 1].map(|end| move |axis| Constant::SpringEnd(index, end, axis));
-        let ends = [0, 1].map(|end| MovedPoint {
-            weight: [-1.0, 1.0][end],
-            body: terms.carrier([&self.from, &self.to][end]),
-            place: Some(&places[end]),
-        });
+        let ends = MovedPoints {
+            parts: [-1.0, 1.0],
+            bodies: [&self.from, &self.to].map(|end| terms.carrier(end)),
+            places: Some(&|end, axis| Constant::SpringEnd(index, end, axis)),
+        };
         nothing.moves(0, ends, |moved| terms.vector(moved));
         let name = &self.name;
         match self.stiffness {

@@ -5,7 +5,7 @@ use crate::functional::Path;
 use crate::math::{Fault, not_negative, positive, rule, value};
 use crate::model::components::component::{Component, Kind};
 use crate::model::constants::constant::Constant;
-use crate::model::constants::free_parameters::{MovedPoint, Read};
+use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::system::bodies::Attachment;
 use crate::model::terms::Terms;
 use nalgebra::Vector3;
@@ -48,15 +48,13 @@ impl Tendon {
         let mut length = read.constant(Constant::TendonLength(index), self.rest_length);
         let mut spans = Vec::new();
         for (first, pair) in self.through.windows(2).enumerate() {
-            let places =
-                [0, 1].map(|end| move |axis| Constant::TendonPoint(index, first + end, axis));
             let span = terms.span(&pair[0], &pair[1]);
-            let ends = [0, 1].map(|end| MovedPoint {
-                weight: [-1.0, 1.0][end],
+            let ends = MovedPoints {
+                parts: [-1.0, 1.0],
                 // A span within a body has the length that it has on the ground.
-                body: span.and_then(|_| terms.carrier(&pair[end])),
-                place: Some(&places[end]),
-            });
+                bodies: [0, 1].map(|end| span.and_then(|_| terms.carrier(&pair[end]))),
+                places: Some(&|end, axis| Constant::TendonPoint(index, first + end, axis)),
+            };
             let moved = read.moves(spans.len(), ends, |vector| terms.vector(vector));
             let between = pair[1].at - pair[0].at;
             match span {

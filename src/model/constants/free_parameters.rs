@@ -16,14 +16,14 @@ pub struct Sought {
     drifts: Arc<Drifts>,
 }
 
-/// A point of which an element reads a part.
-pub(crate) struct MovedPoint<'a> {
-    /// The part.
-    pub(crate) weight: f64,
-    /// The body of the presolved system that carries it; none is the ground.
-    pub(crate) body: Option<usize>,
-    /// The constants that are the components of its place, where they can be free.
-    pub(crate) place: Option<&'a dyn Fn(usize) -> Constant>,
+/// Points of which an element reads the sum by parts.
+pub(crate) struct MovedPoints<'a, const N: usize> {
+    /// The parts.
+    pub(crate) parts: [f64; N],
+    /// The bodies of the presolved system that carry them; none is the ground.
+    pub(crate) bodies: [Option<usize>; N],
+    /// The constant that is the component along an axis of the place of a point, where places can be free.
+    pub(crate) places: Option<&'a dyn Fn(usize, usize) -> Constant>,
 }
 
 impl Sought {
@@ -114,20 +114,20 @@ impl Read {
     pub(crate) fn moves<const N: usize>(
         &mut self,
         of: usize,
-        points: [MovedPoint<'_>; N],
+        points: MovedPoints<'_, N>,
         mut index: impl FnMut(MaterialVector) -> usize,
     ) -> Vec<(usize, f64, [Vector; N])> {
         let mut moves = Vec::new();
         let sought = self.sought.clone();
         for (p, parameter) in sought.parameters.iter().enumerate() {
-            let own = points.each_ref().map(|point| match point.place {
-                Some(place) => parameter.moves(place),
+            let own: [Vector; N] = std::array::from_fn(|point| match points.places {
+                Some(place) => parameter.moves(|axis| place(point, axis)),
                 None => Vector::zeros(),
             });
             let mut sum = MaterialVector::default();
-            for (point, own) in points.iter().zip(&own) {
-                let drift = sought.drifts.of_point(p, point.body, own);
-                sum = MaterialVector::combine(1.0, &sum, point.weight, &drift);
+            for (point, own) in own.iter().enumerate() {
+                let drift = sought.drifts.of_point(p, points.bodies[point], own);
+                sum = MaterialVector::combine(1.0, &sum, points.parts[point], &drift);
             }
             let is_changed = own.iter().any(|own| *own != Vector::zeros());
             let vector = pruned(&sum);

@@ -5,7 +5,7 @@ use crate::functional::Stencil;
 use crate::kinematics::MaterialVector;
 use crate::math::Vector;
 use crate::model::constants::constant::Constant;
-use crate::model::constants::free_parameters::{MovedPoint, Read};
+use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::quantities::measures::{Made, Reading};
 use crate::model::quantities::what::{At, Of, Region, What};
 
@@ -66,13 +66,13 @@ impl Reading<'_, '_> {
     fn moved_marker(&mut self, marker: usize) -> Read {
         let mut moved = self.known.sought.read();
         let of = &self.known.presolved.system.markers[marker];
-        let point = MovedPoint {
-            weight: 1.0,
-            body: of.point.body,
-            place: Some(&|axis| Constant::MarkerPlace(marker, axis)),
+        let point = MovedPoints {
+            parts: [1.0],
+            bodies: [of.point.body],
+            places: Some(&|_, axis| Constant::MarkerPlace(marker, axis)),
         };
         if of.solid.is_none() {
-            moved.moves(0, [point], |vector| self.vectors.index(vector));
+            moved.moves(0, point, |vector| self.vectors.index(vector));
         }
         moved
     }

@@ -36,20 +36,16 @@ impl Solids {
 
     /// Terms of all blocks.
     pub(crate) fn build(&self, internals: &Internals, terms: &mut Terms<'_>) {
-        let all = [INERTIA, NEO_HOOKEAN[0], NEO_HOOKEAN[1], VISCOSITY];
         self.add_inertia(terms);
         self.add_elements(terms);
         self.add_viscosity(terms);
         self.add_branches(internals, terms);
-        for term in all {
-            terms.without(
-                term,
-                match self.list.is_empty() {
-                    true => "no elastic block",
-                    false => "no elastic block that moves",
-                },
-            );
-        }
+        let [elasticity, electroelasticity] = NEO_HOOKEAN;
+        let none = match self.list.is_empty() {
+            true => "no elastic block",
+            false => "no elastic block that moves",
+        };
+        terms.without_each([INERTIA, elasticity, electroelasticity, VISCOSITY], none);
     }
 
     /// Elastic and dielectric elements.
@@ -59,18 +55,15 @@ impl Solids {
                 None => add_element(c, e, NeoHooke, NEO_HOOKEAN, terms),
                 Some(law) => {
                     add_element(c, e, law, GENERAL, terms);
-                    for term in NEO_HOOKEAN {
-                        terms.without(term, "every elastic block names a law of elasticity");
-                    }
+                    terms
+                        .without_each(NEO_HOOKEAN, "every elastic block names a law of elasticity");
                 }
             }
         }
-        for term in GENERAL {
-            terms.without(
-                term,
-                "no elastic block that moves names a law of elasticity",
-            );
-        }
+        terms.without_each(
+            GENERAL,
+            "no elastic block that moves names a law of elasticity",
+        );
     }
 
     /// Viscous elements.

@@ -5,7 +5,7 @@ use crate::functional::{Element, PressureFace};
 use crate::math::Vector;
 use crate::model::components::muscle::{CHARGES as MUSCLE_CHARGES, constants};
 use crate::model::components::{BlockLoad, Load, LoadPlace};
-use crate::model::constants::free_parameters::{MovedPoint, Read};
+use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::layout::internal::Internals;
 use crate::model::layout::solid_block::SolidBlock;
 use crate::model::layout::solids::Solids;
@@ -78,9 +78,7 @@ pub(crate) fn build(
             LoadPlace::Block { block, load } => on.block(&blocks.list[*block], load),
         }
     }
-    for term in [LOADS, FOLLOWING, CHARGES] {
-        terms.without(term, "no load of its kind");
-    }
+    terms.without_each([LOADS, FOLLOWING, CHARGES], "no load of its kind");
     terms.without(
         MUSCLE_CHARGES,
         "no charge of a lumped muscle is given, or flows through a resistor",
@@ -99,12 +97,12 @@ impl Loaded<'_, '_> {
     /// The parameters that move a point, whose place itself is given.
     fn moved(&mut self, at: &Attachment) -> Read {
         let mut read = self.terms.sought().read();
-        let point = MovedPoint {
-            weight: 1.0,
-            body: self.terms.carrier(at),
-            place: None,
+        let point = MovedPoints {
+            parts: [1.0],
+            bodies: [self.terms.carrier(at)],
+            places: None,
         };
-        read.moves(0, [point], |vector| self.terms.vector(vector));
+        read.moves(0, point, |vector| self.terms.vector(vector));
         read
     }
 

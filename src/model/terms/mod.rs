@@ -344,6 +344,15 @@ impl<'a> Terms<'a> {
         }
     }
 
+    /// The same of several terms.
+    pub(super) fn without_each<const N: usize>(
+        &mut self,
+        terms: [&'static str; N],
+        why: &'static str,
+    ) {
+        terms.into_iter().for_each(|term| self.without(term, why));
+    }
+
     /// Adds an element to those of its type under the same name.
     pub(super) fn collect<Kind, T: Member<Kind>>(
         &mut self,
