@@ -10,19 +10,24 @@ use crate::model::system::{JointKind, System};
 /// Joints in an order from the ground outwards, those that close loops, and bodies that nothing holds.
 #[derive(Clone, Debug)]
 pub struct Graph {
-    /// (joint, true if it is walked from child to parent).
-    tree: Vec<(usize, Direction)>,
+    /// Branches of the spanning tree.
+    tree: Vec<Branch>,
     /// Joints that close loops.
     loops: Vec<usize>,
     /// First bodies of parts that no joint connects to the ground.
     free: Vec<usize>,
 }
 
-/// In which direction the spanning tree walks a joint.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Direction {
-    Forward,
-    Backward,
+/// A joint of the spanning tree, as it is walked from the ground outwards.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Branch {
+    pub(crate) joint: usize,
+    /// Body on this side of the joint; none is the ground.
+    pub(crate) from: Option<usize>,
+    /// Body on the other side.
+    pub(crate) to: usize,
+    /// −1 of a joint that is walked from its child to its parent, where the same coordinate moves the other body the other way.
+    sign: f64,
 }
 
 impl Graph {
@@ -55,18 +60,19 @@ impl Graph {
                 if used[j] || parent == reached[joint.child] {
                     continue;
                 }
-                let direction = if parent {
-                    Direction::Forward
-                } else {
-                    Direction::Backward
+                let (from, to, sign) = match joint.parent {
+                    Some(body) if !parent => (Some(joint.child), body, -1.0),
+                    _ => (joint.parent, joint.child, 1.0),
                 };
-                reached[joint.child] = true;
-                if let Some(body) = joint.parent {
-                    reached[body] = true;
-                }
+                reached[to] = true;
                 used[j] = true;
                 grown = true;
-                self.tree.push((j, direction));
+                self.tree.push(Branch {
+                    joint: j,
+                    from,
+                    to,
+                    sign,
+                });
             }
             if !grown {
                 return;
@@ -91,33 +97,19 @@ impl Graph {
     /// Bodies of a tree that may start with any velocity: those that float, and those that turn about a point of another.
     pub fn movable(&self, system: &System) -> (Vec<usize>, Vec<usize>) {
         let (mut floating, mut turning) = (self.free.clone(), Vec::new());
-        for &(j, direction) in &self.tree {
-            let joint = &system.joints[j];
-            let child = match direction {
-                Direction::Forward => Some(joint.child),
-                Direction::Backward => joint.parent,
-            };
-            match joint.kind {
-                JointKind::Floating => floating.extend(child),
-                JointKind::Spherical => turning.extend(child),
+        for branch in &self.tree {
+            match system.joints[branch.joint].kind {
+                JointKind::Floating => floating.push(branch.to),
+                JointKind::Spherical => turning.push(branch.to),
                 _ => {}
             }
         }
         (floating, turning)
     }
 
-    /// Joints of the tree, those nearer to the ground first, with the bodies on this side and on the other.
-    pub(crate) fn outwards<'a>(
-        &'a self,
-        system: &'a System,
-    ) -> impl Iterator<Item = (usize, Option<usize>, usize)> + 'a {
-        self.tree.iter().map(|&(j, direction)| {
-            let joint = &system.joints[j];
-            match (direction, joint.parent) {
-                (Direction::Backward, Some(parent)) => (j, Some(joint.child), parent),
-                _ => (j, joint.parent, joint.child),
-            }
-        })
+    /// Joints of the tree, those nearer to the ground first.
+    pub(crate) fn outwards(&self) -> &[Branch] {
+        &self.tree
     }
 
     /// Joints that close loops.
@@ -156,17 +148,13 @@ impl Graph {
         let mut next = self.coordinate_count(system) - 6 * self.free.len();
         for &body in &self.free {
             let at = reference[body].centre;
-            links.add(JointKind::Floating, [None, Some(body)], at, 1.0, next);
+            links.add(JointKind::Floating, None, body, at, 1.0, next);
             next += 6;
         }
-        for &(j, direction) in &self.tree {
-            let joint = &system.joints[j];
-            // Walked backwards, the same coordinate moves the other body the other way.
-            let (ends, sign) = match direction {
-                Direction::Forward => ([joint.parent, Some(joint.child)], 1.0),
-                Direction::Backward => ([Some(joint.child), joint.parent], -1.0),
-            };
-            links.add(joint.kind, ends, joint.at, sign, joints[j]);
+        for branch in &self.tree {
+            let (joint, first) = (&system.joints[branch.joint], joints[branch.joint]);
+            let Branch { from, to, sign, .. } = *branch;
+            links.add(joint.kind, from, to, joint.at, sign, first);
         }
         Tree::new(links.list, system.bodies.len(), vectors)
     }
@@ -261,12 +249,12 @@ impl Links<'_> {
     fn add(
         &mut self,
         kind: JointKind,
-        [parent, child]: [Option<usize>; 2],
+        parent: Option<usize>,
+        child: usize,
         at: Vector,
         sign: f64,
         first: usize,
     ) {
-        let child = child.expect("the ground is reached first");
         let p = parent.map_or(Pose::GROUND, |b| self.reference[b]);
         let c = self.reference[child];
         let (mut screws, chart) = kind.screws();

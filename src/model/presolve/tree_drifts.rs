@@ -60,10 +60,12 @@ fn drifts(
             reference,
         );
     }
-    for (joint, parent, child) in graph.outwards(&presolved.system) {
-        let moved = parameter.moves(|axis| Constant::JointPlace(presolved.joints[joint], axis));
-        let of_parent = parent.map_or_else(MaterialVector::default, |body| drifts[body].clone());
-        drifts[child] = step(&of_parent, [parent, Some(child)], &moved, reference);
+    for branch in graph.outwards() {
+        let joint = presolved.joints[branch.joint];
+        let moved = parameter.moves(|axis| Constant::JointPlace(joint, axis));
+        let (from, to) = (branch.from, branch.to);
+        let before = from.map_or_else(MaterialVector::default, |body| drifts[body].clone());
+        drifts[to] = step(&before, [from, Some(to)], &moved, reference);
     }
     drifts
 }
