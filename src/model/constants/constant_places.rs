@@ -11,6 +11,7 @@ type Unit = (&'static str, f64);
 const LENGTH: Unit = ("m", 1e-3);
 const RATIO: Unit = ("", 1.0);
 const OHM: Unit = ("Ohm", 1.0);
+const PASCAL: Unit = ("Pa", 1e6);
 
 /// Signs that a constant may have.
 const POSITIVE: bool = true;
@@ -58,37 +59,27 @@ impl MaterialConstant {
         plain.into_iter().chain(names).chain(branches)
     }
 
-    fn unit(self) -> Unit {
+    /// Its unit, its sign, and the reason of a material that does not have it.
+    fn description(self) -> (Unit, bool, &'static str) {
+        let no_branch = "the material has no such Maxwell branch";
         match self {
-            Self::Density => ("kg/m^3", 1e6),
-            Self::ShearModulus | Self::LameLambda | Self::BranchModulus(_) => ("Pa", 1e6),
-            Self::Viscosity => ("Pa s", 1e3),
-            Self::RelaxationTime(_) => ("s", 1e-3),
-            Self::Law("c2" | "c3") => ("Pa", 1e6),
-            Self::C1 | Self::C2 | Self::Permittivity => ("F/m", 1.0),
-            Self::Law(_) => ("", 1.0),
-        }
-    }
-
-    fn is_positive(self) -> bool {
-        !matches!(
-            self,
-            Self::Law(_) | Self::LameLambda | Self::C1 | Self::C2 | Self::Permittivity
-        )
-    }
-
-    /// The reason of a material that does not have it.
-    fn lacking(self) -> &'static str {
-        match self {
-            Self::Density => "the material has no density",
-            Self::ShearModulus => "the material has no shear modulus",
-            Self::LameLambda => "the material has no first Lamé constant",
-            Self::C1 | Self::C2 | Self::Permittivity => "the material has no electric constants",
-            Self::Viscosity => "the material has no viscosity",
-            Self::Law(_) => "the material has no such law of elasticity",
-            Self::BranchModulus(_) | Self::RelaxationTime(_) => {
-                "the material has no such Maxwell branch"
+            Self::Density => (("kg/m^3", 1e6), POSITIVE, "the material has no density"),
+            Self::ShearModulus => (PASCAL, POSITIVE, "the material has no shear modulus"),
+            Self::LameLambda => (PASCAL, ANY, "the material has no first Lamé constant"),
+            Self::C1 | Self::C2 | Self::Permittivity => {
+                (("F/m", 1.0), ANY, "the material has no electric constants")
             }
+            Self::Viscosity => (("Pa s", 1e3), POSITIVE, "the material has no viscosity"),
+            Self::Law(name) => {
+                let unit = if matches!(name, "c2" | "c3") {
+                    PASCAL
+                } else {
+                    RATIO
+                };
+                (unit, ANY, "the material has no such law of elasticity")
+            }
+            Self::BranchModulus(_) => (PASCAL, POSITIVE, no_branch),
+            Self::RelaxationTime(_) => (("s", 1e-3), POSITIVE, no_branch),
         }
     }
 }
@@ -197,7 +188,7 @@ macro_rules! implement {
             /// Its unit in the International System.
             pub fn unit(self, $system: &System) -> SiUnit {
                 let (symbol, factor) = match self {
-                    Self::Material(_, constant) => constant.unit(),
+                    Self::Material(_, constant) => constant.description().0,
                     Self::PeakVoltage => ("V", 1.0),
                     $($(Self::$name($part $(, $index)*) => $unit,)*)*
                 };
@@ -207,7 +198,7 @@ macro_rules! implement {
             /// Returns true if it must be positive to have a meaning.
             pub fn is_positive(self) -> bool {
                 match self {
-                    Self::Material(_, constant) => constant.is_positive(),
+                    Self::Material(_, constant) => constant.description().1,
                     Self::PeakVoltage => ANY,
                     $($(Self::$name(..) => $sign,)*)*
                 }
@@ -230,7 +221,7 @@ macro_rules! implement {
             /// The reason of a part that does not have it.
             pub(crate) fn lacking(self) -> &'static str {
                 match self {
-                    Self::Material(_, constant) => constant.lacking(),
+                    Self::Material(_, constant) => constant.description().2,
                     Self::PeakVoltage => NONE,
                     $($(Self::$name(..) => $lacking,)*)*
                 }
