@@ -12,7 +12,7 @@ use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::Sought;
 use crate::model::layout::internal::Internals;
 use crate::model::layout::named::Named;
-use crate::model::layout::solids::{Circuits, Solids};
+use crate::model::layout::solids::Solids;
 use crate::model::layout::variables::{Role, Size, Time, Variable, Variables};
 use crate::model::model::{Model, length};
 use crate::model::presolve::graph::Graph;
@@ -89,10 +89,10 @@ impl Model {
         let mut variables = interval_variables(&inputs, &sources, &analysis);
         let blocks = Solids::new(
             solids,
+            &system,
+            &analysis,
             &reference,
-            |block| field_extent::charged(&system, block, &analysis.zero_inputs),
             coordinates == Coordinates::Redundant,
-            &Circuits::new(&system, &analysis),
             &mut variables,
             &mut vectors,
         )?;

@@ -139,28 +139,35 @@ impl Model {
         Some(self.internals.get(index)?.kind)
     }
 
+    /// Internal coordinates of some meaning, each with what is read of it.
+    fn internals_of<'m, T: 'm>(
+        &'m self,
+        of: impl Fn(InternalKind) -> Option<T> + 'm,
+    ) -> impl Iterator<Item = (usize, T)> + 'm {
+        self.internal_kinds()
+            .filter_map(move |(coordinate, kind)| Some((coordinate, of(kind)?)))
+    }
+
     /// Internal coordinates of joints, each with its joint of the scene.
     fn internal_joints(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
-        self.internal_kinds()
-            .filter_map(|(coordinate, kind)| match kind {
-                InternalKind::Joint(joint) => Some((coordinate, self.presolved.joints[joint])),
-                _ => None,
-            })
+        self.internals_of(|kind| match kind {
+            InternalKind::Joint(joint) => Some(self.presolved.joints[joint]),
+            _ => None,
+        })
     }
 
     /// Internal coordinates of Maxwell branches, each with its muscle and its number there.
-    fn branches(&self) -> impl Iterator<Item = (usize, usize, usize)> + '_ {
-        self.internal_kinds()
-            .filter_map(|(coordinate, kind)| match kind {
-                InternalKind::Branch { muscle, branch } => Some((coordinate, muscle, branch)),
-                _ => None,
-            })
+    fn branches(&self) -> impl Iterator<Item = (usize, [usize; 2])> + '_ {
+        self.internals_of(|kind| match kind {
+            InternalKind::Branch { muscle, branch } => Some([muscle, branch]),
+            _ => None,
+        })
     }
 
     /// Coordinates of the Maxwell branches of a muscle, in their order.
     pub(super) fn branches_of(&self, muscle: usize) -> Vec<usize> {
-        let own = self.branches().filter(|(_, of, _)| *of == muscle);
-        own.map(|(coordinate, ..)| coordinate).collect()
+        let own = self.branches().filter(|(_, [of, _])| *of == muscle);
+        own.map(|(coordinate, _)| coordinate).collect()
     }
 
     /// Gives internal coordinates their values at joint coordinates (by joint of the scene); muscles and blocks have been held there for long.
@@ -204,38 +211,30 @@ impl Model {
     pub fn viscous_stretches(&self) -> impl Iterator<Item = String> + '_ {
         let name = |muscle: usize| &self.system.muscles[muscle].name;
         let branches = self.branches();
-        branches.map(move |(_, m, branch)| format!("{}_viscous_stretch{}", name(m), branch + 1))
+        branches.map(move |(_, [m, branch])| format!("{}_viscous_stretch{}", name(m), branch + 1))
     }
 
     /// Their coordinates, of which each is the logarithm of one.
     pub fn viscous_coordinates(&self) -> impl Iterator<Item = usize> + '_ {
-        self.branches().map(|(coordinate, ..)| coordinate)
+        self.branches().map(|(coordinate, _)| coordinate)
     }
 
     /// Coordinates that muscles and blocks remember: they have no momentum, and nothing brings them to rest but time.
     pub fn memory(&self) -> impl Iterator<Item = usize> + '_ {
-        let own = self.internal_kinds().filter(|(_, kind)| kind.is_memory());
-        own.map(|(coordinate, _)| coordinate)
+        let own = self.internals_of(|kind| kind.is_memory().then_some(()));
+        own.map(|(coordinate, ())| coordinate)
     }
 
     /// Returns true if it has Maxwell branches, whose stretches follow the motion in times of their own.
     pub fn creeps(&self) -> bool {
-        let is_branch = |kind: &InternalKind| {
-            matches!(
-                kind,
-                InternalKind::Branch { .. } | InternalKind::Strain { .. }
-            )
-        };
-        self.internal_kinds().any(|(_, kind)| is_branch(&kind))
+        self.branches().next().is_some() || self.strains().next().is_some()
     }
 
     /// Coordinates of the viscous strains of blocks: they have no inertia, whatever moves.
     pub fn strains(&self) -> impl Iterator<Item = usize> + '_ {
-        let is_strain = |kind: &InternalKind| matches!(kind, InternalKind::Strain { .. });
-        let own = self
-            .internal_kinds()
-            .filter(move |(_, kind)| is_strain(kind));
-        own.map(|(coordinate, _)| coordinate)
+        let is_strain = |kind| matches!(kind, InternalKind::Strain { .. });
+        let own = self.internals_of(move |kind| is_strain(kind).then_some(()));
+        own.map(|(coordinate, ())| coordinate)
     }
 
     /// Returns true if coordinate `i` is one of [`memory`](Self::memory).

@@ -11,9 +11,9 @@ use crate::model::analysis::{Analysis, ModelError};
 use crate::model::layout::solid_block::{Owner, SolidBlock};
 use crate::model::layout::variables::{Variable, Variables};
 use crate::model::system::electrode_circuits::ElectrodeCircuit;
-use crate::model::system::{Fidelity, Glue, Material, Potential, Solid, System};
+use crate::model::system::{Glue, Material, Potential, Solid, System};
 use crate::model::terms::field_extent;
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 /// Blocks before they become terms: nodes and ties of all of them.
@@ -30,20 +30,6 @@ pub(crate) struct Solids {
     pub(crate) circuits: Vec<ElectrodeCircuit>,
 }
 
-/// Circuits of a scene as blocks see them.
-pub(crate) struct Circuits<'a> {
-    scene: &'a System,
-    /// True of a motion: at rest no charge flows.
-    of_motion: bool,
-}
-
-impl<'a> Circuits<'a> {
-    pub(crate) fn new(scene: &'a System, analysis: &Analysis) -> Self {
-        let of_motion = analysis.of_motion;
-        Self { scene, of_motion }
-    }
-}
-
 /// Source of a potential before it is numbered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Connection {
@@ -57,37 +43,37 @@ enum Connection {
 
 impl Solids {
     /// Lays out blocks, of which the first ones are those of the scene. Their potentials are added to `variables`, which have all
-    /// voltages; `charged` nodes of a block carry a charge; glued nodes keep coordinates of their own where `ties` says so.
+    /// voltages; glued nodes keep coordinates of their own where `ties` says so.
     ///
     /// # Errors
     /// An element of a mesh is inverted.
     pub(crate) fn new(
         solids: Vec<Solid>,
+        system: &System,
+        analysis: &Analysis,
         reference: &[Pose],
-        charged: impl Fn(usize) -> BTreeSet<usize>,
         ties: bool,
-        circuits: &Circuits<'_>,
         variables: &mut Variables,
         vectors: &mut Vectors,
     ) -> Result<Self, ModelError> {
         let (mut out, unit) = (Self::default(), unit(&solids));
-        let scene = circuits.scene.solids.len();
-        let muscles = circuits.scene.muscles.iter().enumerate();
-        let meshed = muscles.filter(|(_, muscle)| muscle.fidelity != Fidelity::Lumped);
-        let of_scene = (0..scene).map(Owner::Block);
-        let owners = of_scene.chain(meshed.map(|(m, _)| Owner::Muscle(m)));
+        let of_scene = (0..system.solids.len()).map(Owner::Block);
+        let owners = of_scene.chain(system.meshed_muscles().map(Owner::Muscle));
         for ((index, solid), owner) in solids.into_iter().enumerate().zip(owners) {
             let shapes = shapes(&solid)?;
             let places = out.places(index, &solid, reference, ties, vectors);
-            let is_dielectric = field_extent::dielectric(&solid, &charged(index));
-            let (terminals, own) = terminals(&solid, &is_dielectric, unit, circuits, variables);
+            let charged = field_extent::charged(system, index, &analysis.zero_inputs);
+            let is_dielectric = field_extent::dielectric(&solid, &charged);
+            let of_motion = analysis.of_motion;
+            let (terminals, own) =
+                terminals(&solid, &is_dielectric, unit, system, of_motion, variables);
             let charge = unit_of_charge(&solid, &shapes);
             out.circuits
                 .extend(own.into_iter().filter_map(|(source, potential)| {
                     Some(ElectrodeCircuit {
                         source,
-                        name: circuits.scene.sources()[source].name.clone(),
-                        circuit: circuits.scene.electrode_circuit(source)?,
+                        name: system.sources()[source].name.clone(),
+                        circuit: system.electrode_circuit(source)?,
                         input: variables.input(source)?,
                         potential: (potential, unit),
                         unit_of_charge: charge,
@@ -163,15 +149,16 @@ impl Solids {
     }
 }
 
-/// The terminal of each node that a dielectric element has, and the potentials of electrodes behind resistors by source.
+/// The terminal of each node that a dielectric element has, and the potentials of electrodes behind resistors by source: at rest no charge
+/// flows.
 fn terminals(
     solid: &Solid,
     is_dielectric: &[bool],
     unit: f64,
-    circuits: &Circuits<'_>,
+    system: &System,
+    of_motion: bool,
     variables: &mut Variables,
 ) -> (Vec<Option<ScalarArg>>, BTreeMap<usize, usize>) {
-    let Circuits { scene, of_motion } = *circuits;
     let mut wires = vec![None; solid.mesh.nodes.len()];
     let elements = solid.mesh.hexahedra.iter().zip(is_dielectric);
     for (nodes, _) in elements.filter(|(_, is)| **is) {
@@ -187,7 +174,7 @@ fn terminals(
             }),
             Potential::Driven { source, factor }
                 if of_motion
-                    && scene.has_electrodes_behind_resistor(source)
+                    && system.has_electrodes_behind_resistor(source)
                     && variables.input(source).is_some() =>
             {
                 Connection::Behind(source, factor)
@@ -196,7 +183,7 @@ fn terminals(
                 constant: 0.0,
                 scalar: variables
                     .input(source)
-                    .map(|s| (s, factor * scene.division(source))),
+                    .map(|s| (s, factor * system.division(source))),
             }),
             Potential::Floating => Connection::Floating(e),
         };
@@ -215,7 +202,7 @@ fn terminals(
             Connection::Terminal(terminal) => return Some(terminal),
             Connection::Behind(source, of_source) => {
                 factor = of_source;
-                let name = || scene.sources()[source].name.clone();
+                let name = || system.sources()[source].name.clone();
                 *behind.entry(source).or_insert_with(|| fresh(name()))
             }
             Connection::Floating(e) => *floating.entry(e).or_insert_with(|| {

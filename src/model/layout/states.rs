@@ -213,18 +213,10 @@ pub struct MuscleReading {
     pub muscle: usize,
     /// Coordinates of its Maxwell branches.
     branches: Vec<usize>,
-    drive: Option<Drive>,
-}
-
-/// Origin of the voltage between the electrodes.
-#[derive(Clone, Copy, Debug)]
-enum Drive {
-    /// The scalar of a source.
-    Source(usize),
-    /// The charge that flows through a circuit, with the scalar of its source where it is ever other than zero.
-    Circuit(Charged, Option<usize>),
-    /// A given charge.
-    Charge(Charged),
+    /// Its charge, where it has one instead of the voltage of a source.
+    charged: Option<Charged>,
+    /// The scalar of its source, where that is ever other than zero.
+    input: Option<usize>,
 }
 
 /// Electrical state of a muscle with a source.
@@ -244,43 +236,38 @@ impl Model {
         let readings = lumped.map(|(m, _)| MuscleReading {
             muscle: m,
             branches: self.branches_of(m),
-            drive: self.drive(m),
+            charged: self.charged().find(|charged| charged.muscle == m),
+            input: self.variables.input(m),
         });
         readings.collect()
-    }
-
-    fn drive(&self, muscle: usize) -> Option<Drive> {
-        let input = self.variables.input(muscle);
-        let charged = self.charged().find(|charged| charged.muscle == muscle);
-        match charged {
-            Some(charged) => Some(match charged.place {
-                ChargePlace::Coordinate(_) => Drive::Circuit(charged, input),
-                ChargePlace::Input(_) => Drive::Charge(charged),
-            }),
-            None => input.map(Drive::Source),
-        }
     }
 }
 
 impl MuscleReading {
     /// Returns true if there is a voltage between its electrodes, so that it has a field.
     pub fn has_voltage(&self) -> bool {
-        self.drive.is_some()
+        self.charged.is_some() || self.input.is_some()
     }
 
     /// Returns true if a source supplies its charge.
     pub fn has_source(&self) -> bool {
-        matches!(self.drive, Some(Drive::Source(_) | Drive::Circuit(..)))
+        match self.charged {
+            Some(charged) => matches!(charged.place, ChargePlace::Coordinate(_)),
+            None => self.input.is_some(),
+        }
+    }
+
+    /// The scalar of its source, whose voltage its electrodes have.
+    fn direct(&self) -> Option<usize> {
+        self.input.filter(|_| self.charged.is_none())
     }
 
     fn voltage(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> Option<f64> {
         let of = &model.system.muscles[self.muscle];
-        Some(match self.drive? {
-            Drive::Source(scalar) => of.voltage_at_rest(scalars[scalar]),
-            Drive::Circuit(charged, _) | Drive::Charge(charged) => {
-                charged.voltage(model, at, scalars)
-            }
-        })
+        match self.charged {
+            Some(charged) => Some(charged.voltage(model, at, scalars)),
+            None => Some(of.voltage_at_rest(scalars[self.input?])),
+        }
     }
 
     /// Force in N with which it pulls its ends together: of elasticity, voltage, viscosity and Maxwell branches.
@@ -304,19 +291,19 @@ impl MuscleReading {
     pub fn flow(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> Option<SourceFlow> {
         let of = &model.system.muscles[self.muscle];
         let span = model.spans[self.muscle];
-        let (voltage, current) = match self.drive? {
-            Drive::Source(scalar) => {
-                let voltage = scalars[scalar];
+        let (voltage, current) = match self.charged {
+            None => {
+                let voltage = scalars[self.input?];
                 let charging = voltage * capacitance_rate(of, [&at.x[span], &at.w[span]])?;
                 let leak = of.circuit.as_ref().and_then(Circuit::leak_conductance);
                 (voltage, leak.map_or(charging, |g| charging + g * voltage))
             }
-            Drive::Circuit(charged, scalar) => {
-                let voltage = scalar.map_or(0.0, |scalar| scalars[scalar]);
+            Some(_) if !self.has_source() => return None,
+            Some(charged) => {
+                let voltage = self.input.map_or(0.0, |scalar| scalars[scalar]);
                 let across = charged.voltage(model, at, scalars);
                 (voltage, (voltage - across) / of.circuit?.resistance?)
             }
-            Drive::Charge(_) => return None,
         };
         let power = voltage * current;
         Some(SourceFlow { current, power })
@@ -330,7 +317,7 @@ impl MuscleReading {
         at: &Configuration,
         [scalars, rates]: [&[f64]; 2],
     ) -> [f64; 2] {
-        let Some(Drive::Source(scalar)) = self.drive else {
+        let Some(scalar) = self.direct() else {
             return [0.0; 2];
         };
         let current = self.capacitance(model, at) * rates[scalar];
@@ -340,7 +327,7 @@ impl MuscleReading {
     /// Charge and energy that the source supplies where its voltage switches, in mC and mJ, at a placed instant: `C (V₂ − V₁)` and
     /// `½ C (V₂² − V₁²)`; none through a resistor.
     pub fn switched(&self, model: &Model, at: &Configuration, scalars: [&[f64]; 2]) -> [f64; 2] {
-        let Some(Drive::Source(scalar)) = self.drive else {
+        let Some(scalar) = self.direct() else {
             return [0.0; 2];
         };
         let [before, after] = scalars.map(|scalars| scalars[scalar]);

@@ -139,20 +139,21 @@ impl Charged {
 impl Model {
     /// Muscles behind resistors, then those whose charge is given.
     pub(crate) fn charged(&self) -> impl Iterator<Item = Charged> + '_ {
-        let behind = self.internal_kinds().filter_map(|(coordinate, kind)| {
-            let InternalKind::Charge(muscle) = kind else {
-                return None;
-            };
-            Some((muscle, ChargePlace::Coordinate(coordinate)))
-        });
-        let loads = &self.system.components.loads;
-        let given = (self.sources.len() - loads.len()..).zip(loads);
-        let given = given.filter_map(|(source, load)| {
-            let LoadPlace::Muscle(muscle) = load.on else {
-                return None;
-            };
-            Some((muscle, ChargePlace::Input(self.variables.input(source)?)))
-        });
+        let behind = self
+            .internal_kinds()
+            .filter_map(|(coordinate, kind)| match kind {
+                InternalKind::Charge(muscle) => Some((muscle, ChargePlace::Coordinate(coordinate))),
+                _ => None,
+            });
+        let given = self
+            .system
+            .loads()
+            .filter_map(|(source, load)| match load.on {
+                LoadPlace::Muscle(muscle) => {
+                    Some((muscle, ChargePlace::Input(self.variables.input(source)?)))
+                }
+                _ => None,
+            });
         behind.chain(given).filter_map(|(muscle, place)| {
             let capacitance = capacitance(self.system.muscles.get(muscle)?)?;
             Some(Charged {
