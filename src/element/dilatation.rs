@@ -8,6 +8,7 @@
 //! ```
 
 use super::elastomer::Elastomer;
+use super::fields::gradient_of;
 use super::geometry::ElementGeometry;
 use super::isochoric::ElementLaw;
 use super::law::{Field, Volume};
@@ -26,12 +27,6 @@ pub struct Dilatation<const NODES: usize = 8> {
     pub shear_modulus: f64,
 }
 
-/// F at a Gauss point, of nodes at `x`.
-fn deformation<const NODES: usize>(x: &[Vector; NODES], gradients: &[Vector; NODES]) -> Matrix {
-    let pairs = x.iter().zip(gradients);
-    pairs.map(|(x, gradient)| x * gradient.transpose()).sum()
-}
-
 impl<F: Field, L: ElementLaw> Elastomer<F, L> {
     /// The volume of an element with nodes at `x` in mm; `None` where the volumetric energy is that of the points.
     pub fn dilatation<const NODES: usize>(
@@ -45,7 +40,7 @@ impl<F: Field, L: ElementLaw> Elastomer<F, L> {
         let (mut slopes, mut volume) = ([Vector::zeros(); NODES], 0.0);
         for (g, w) in shape.weights().iter().enumerate() {
             let gradients = shape.gradients_at(g);
-            let of_point = deformation(x, &gradients);
+            let of_point = gradient_of(x, &gradients);
             let [a, b, c] = [0, 1, 2].map(|m| of_point.column(m).into_owned());
             let cofactor = Matrix::from_columns(&[b.cross(&c), c.cross(&a), a.cross(&b)]);
             volume += w * a.dot(&b.cross(&c));
@@ -72,7 +67,7 @@ pub fn second_derivatives_of_volume<const NODES: usize>(
     let mut axial = [[Vector::zeros(); NODES]; NODES];
     for (g, w) in shape.weights().iter().enumerate() {
         let gradients = shape.gradients_at(g);
-        let of_point = deformation(x, &gradients) * *w;
+        let of_point = gradient_of(x, &gradients) * *w;
         for i in 0..NODES {
             for j in 0..i {
                 axial[i][j] += of_point * gradients[i].cross(&gradients[j]);

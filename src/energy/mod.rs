@@ -2,7 +2,6 @@
 
 mod along_span;
 mod charge;
-mod charge_limit;
 mod coefficient;
 mod constraint;
 mod elastic_law;
@@ -18,35 +17,29 @@ mod spring;
 mod viscosity;
 
 pub use along_span::AlongSpan;
-pub use charge::Capacitance;
-pub use charge::{FlowingCharge, GivenCharge};
-pub use charge_limit::{
-    FlowingChargeField, GivenChargeField, MeanCharge, PotentialDrop, SourceCurrent, SourcePower,
-    StoredEnergy, VoltageAcross,
+pub use charge::{
+    Capacitance, FlowingCharge, FlowingChargeField, GivenCharge, GivenChargeField, MeanCharge,
+    PotentialDrop, SourceCurrent, SourcePower, StoredEnergy, VoltageAcross,
 };
 pub use coefficient::Coefficient;
 pub use constraint::{Coincidence, Orthogonality};
 pub use elastic_law::{ElasticConstants, ElasticLaw, Elasticity, NeoHooke};
-pub use kinetic::Gravity;
-pub use kinetic::{DeadLoad, FollowingForce, SurfaceCharge};
-pub use kinetic::{KineticCoupling, KineticEnergy};
+pub use kinetic::{
+    DeadLoad, FollowingForce, Gravity, KineticCoupling, KineticEnergy, SurfaceCharge,
+};
 pub(crate) use law::law;
 pub use law::{Constants, Law};
 pub use limit::{
     Angle, AngleStep, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
     ProjectionStep, SquaredDistance, SquaredField,
 };
-pub use maxwell_damper::MaxwellCell;
-pub use maxwell_damper::{DamperDerivatives, MaxwellDamper};
+pub use maxwell_damper::{DamperDerivatives, MaxwellCell, MaxwellDamper};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
 pub use of_square::OfSquare;
-pub use one_sided::Cable;
-pub use one_sided::CoordinateStops;
+pub use one_sided::{Cable, CoordinateStops};
 pub use span_tension::SpanTension;
-pub use spring::{CoordinateSpring, JointAngle, JointDisplacement};
-pub use spring::{LinearSpring, SpanDamper};
-pub use viscosity::{AngularDamper, CoordinateDamper, LinearDamper};
-pub use viscosity::{ViscousCell, ViscousTension};
+pub use spring::{CoordinateSpring, JointAngle, JointDisplacement, LinearSpring, SpanDamper};
+pub use viscosity::{AngularDamper, CoordinateDamper, LinearDamper, ViscousCell, ViscousTension};
 
 use crate::math::{Local, Number};
 use nalgebra::SVector;

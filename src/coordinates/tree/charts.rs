@@ -31,6 +31,13 @@ fn nearest_rotation(matrix: &Matrix) -> Rotation3<f64> {
     Rotation3::from_matrix_eps(matrix, f64::EPSILON, SEARCH, near)
 }
 
+impl Link {
+    /// Coordinate of a link that turns or slides.
+    fn own_coordinate(&self) -> usize {
+        self.coordinate.expect("a screw has a coordinate")
+    }
+}
+
 impl Tree {
     /// The three turns behind each chart.
     fn turns(&self) -> impl Iterator<Item = &[Link]> {
@@ -41,8 +48,7 @@ impl Tree {
 
     /// Coordinates of the three turns behind each chart.
     pub fn charted(&self) -> Vec<[usize; 3]> {
-        let turn = |link: &Link| link.coordinate.expect("a turn has a coordinate");
-        let turns = |links: &[Link]| [turn(&links[0]), turn(&links[1]), turn(&links[2])];
+        let turns = |links: &[Link]| [0, 1, 2].map(|i| links[i].own_coordinate());
         self.turns().map(turns).collect()
     }
 
@@ -59,7 +65,7 @@ impl Tree {
         for (links, chart) in self.turns().zip(charts.chunks_exact_mut(CHART)) {
             write(turned(links, u, chart), chart);
             for link in links {
-                u[link.coordinate.expect("a turn has a coordinate")] = 0.0;
+                u[link.own_coordinate()] = 0.0;
             }
         }
     }
@@ -76,7 +82,7 @@ impl Tree {
             let between = turned(links, from, &none).inverse() * turned(links, to, &none);
             let vector = between.scaled_axis();
             for link in links {
-                let coordinate = link.coordinate.expect("a turn has a coordinate");
+                let coordinate = link.own_coordinate();
                 differences[coordinate] = link.axis.dot(&vector);
             }
         }
@@ -87,7 +93,7 @@ impl Tree {
         for (links, chart) in self.turns().zip(charts.chunks_exact_mut(CHART)) {
             let mut vector = Vector::zeros();
             for link in links {
-                let coordinate = link.coordinate.expect("a turn has a coordinate");
+                let coordinate = link.own_coordinate();
                 vector += std::mem::take(&mut u[coordinate]) * link.axis;
             }
             write(
@@ -119,7 +125,7 @@ impl Tree {
             ];
             let sign = axes.determinant().signum();
             for (link, angle) in links.iter().zip(angles) {
-                u[link.coordinate.expect("a turn has a coordinate")] = sign * angle;
+                u[link.own_coordinate()] = sign * angle;
             }
             chart.copy_from_slice(other);
         }
@@ -147,10 +153,10 @@ impl Tree {
             let point = child.centre - parent.directors * (rotation * last.centre);
             let moved = parent.local(&point) - link.point;
             for slide in root..first {
-                u[self.coordinate(slide)] = self.links[slide].axis.dot(&moved);
+                u[self.links[slide].own_coordinate()] = self.links[slide].axis.dot(&moved);
             }
             for turn in first..first + 3 {
-                u[self.coordinate(turn)] = 0.0;
+                u[self.links[turn].own_coordinate()] = 0.0;
             }
         }
     }
@@ -177,7 +183,7 @@ impl Tree {
         let passes = passes - (origin + omega.cross(&point));
         for j in root..=last {
             let apart = if j < first { passes } else { spin - omega };
-            l[self.coordinate(j)] = state.axes[j].dot(&apart);
+            l[self.links[j].own_coordinate()] = state.axes[j].dot(&apart);
         }
         true
     }
@@ -194,12 +200,6 @@ impl Tree {
             .take_while(is_between)
             .last()
             .unwrap_or(first)
-    }
-
-    fn coordinate(&self, link: usize) -> usize {
-        self.links[link]
-            .coordinate
-            .expect("a screw has a coordinate")
     }
 
     /// Puts the charts at the mean of the rotations of other configurations, by weights whose sum is one, and their turns to
@@ -232,7 +232,7 @@ impl Tree {
             let mean = away.sum::<Vector3<f64>>();
             write(near * UnitQuaternion::from_scaled_axis(mean), chart);
             for link in links {
-                u[link.coordinate.expect("a turn has a coordinate")] = 0.0;
+                u[link.own_coordinate()] = 0.0;
             }
         }
     }

@@ -14,10 +14,10 @@ use crate::model::components::{BlockLoad, Components, Load, LoadPlace};
 use nalgebra::{Matrix3, Vector3};
 
 pub use crate::energy::ElasticLaw;
-pub use crate::model::system::bodies::Attachment;
-pub use crate::model::system::bodies::{Body, Shape, directors_along, is_diagonal, principal};
-pub use crate::model::system::circuit::Circuit;
-pub use crate::model::system::circuit::{InputKind, Source, voltage_sources};
+pub use crate::model::system::bodies::{
+    Attachment, Body, Shape, directors_along, is_diagonal, principal,
+};
+pub use crate::model::system::circuit::{Circuit, InputKind, Source, voltage_sources};
 pub use crate::model::system::maxwell::{MaxwellBranch, MaxwellBranches};
 
 /// A mechanical system; `None` for a body index is the ground.
