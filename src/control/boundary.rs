@@ -228,7 +228,7 @@ fn start_of(
 ) -> Result<(Start, Option<Vec<f64>>), BoundaryError> {
     match start {
         BoundaryState::RestAtVoltages(voltages, _) => {
-            let rest = rest_at(model, voltages, ("start", 0.0))?;
+            let rest = rest_at(model, voltages, "start", 0.0)?;
             Ok((at_rest(model, rest.z, "start")?, Some(rest.scalars)))
         }
         state => Ok((resolve_start(model, state, "start")?, None)),
@@ -246,7 +246,7 @@ fn coordinates_at_goal(
     let mut given = vec![None; n];
     match goal {
         BoundaryState::RestAtVoltages(voltages, of) => {
-            let rest = rest_at(model, voltages, ("goal", control.duration.first()))?;
+            let rest = rest_at(model, voltages, "goal", control.duration.first())?;
             let reached = match of {
                 Rest::Everything | Rest::Attainable => n,
                 Rest::Bodies => model.action.map.of_bodies.min(n),

@@ -99,14 +99,15 @@ impl TerminalState {
 pub fn rest_at(
     model: &Model,
     voltages: &[f64],
-    (place, time): (&'static str, f64),
+    place: &'static str,
+    time: f64,
 ) -> Result<Equilibrium, BoundaryError> {
     let parameters = &model.analysis.parameters;
     if parameters.is_empty() {
-        return equilibrium(model, voltages, (place, time));
+        return equilibrium(model, voltages, place, time);
     }
     let guesses: Vec<f64> = parameters.iter().map(|p| p.guess).collect();
-    let mut found = rest_with(model, voltages, &guesses, (place, time))?;
+    let mut found = rest_with(model, voltages, &guesses, place, time)?;
     let at = model.variables.range(Role::Parameter).start;
     found.scalars.splice(at..at, guesses);
     Ok(found)
@@ -117,9 +118,10 @@ pub(super) fn rest_with(
     model: &Model,
     voltages: &[f64],
     values: &[f64],
-    at: (&'static str, f64),
+    place: &'static str,
+    time: f64,
 ) -> Result<Equilibrium, BoundaryError> {
-    equilibrium(&with_values(model, values)?, voltages, at)
+    equilibrium(&with_values(model, values)?, voltages, place, time)
 }
 
 /// The model without free parameters, with values put in their places.
@@ -139,7 +141,8 @@ pub(super) fn with_values(model: &Model, values: &[f64]) -> Result<Model, ModelE
 fn equilibrium(
     model: &Model,
     voltages: &[f64],
-    (place, time): (&'static str, f64),
+    place: &'static str,
+    time: f64,
 ) -> Result<Equilibrium, BoundaryError> {
     let zero = model.reference_coordinates_at(time);
     let found = stable_equilibrium(model, &zero, &model.scalars(voltages));

@@ -143,19 +143,19 @@ pub(super) fn check(
     }
     remembered_start(model, control)?;
     let ends = [
-        (("start", 0.0), &control.start),
-        (("goal", control.duration.first()), &control.goal),
+        ("start", 0.0, &control.start),
+        ("goal", control.duration.first(), &control.goal),
     ];
     let mut depends = [false; 2];
-    for ((depends, (at, state)), z) in depends.iter_mut().zip(ends).zip(rest) {
+    for ((depends, (place, time, state)), z) in depends.iter_mut().zip(ends).zip(rest) {
         let (BoundaryState::RestAtVoltages(voltages, _), Some(z)) = (state, z) else {
             continue;
         };
         for (index, parameter) in control.parameters.iter().enumerate() {
-            if depends_on(model, at, voltages, z, index) {
+            if depends_on(model, place, time, voltages, z, index) {
                 *depends = true;
-                let reason = not_sought(model, boundary, at.0);
-                if let Some(reason) = reason.or_else(|| steps_from_rest(boundary, at.0)) {
+                let reason = not_sought(model, boundary, place);
+                if let Some(reason) = reason.or_else(|| steps_from_rest(boundary, place)) {
                     return Err(BoundaryError::Parameter {
                         name: parameter.name.clone(),
                         reason,
@@ -211,7 +211,7 @@ pub(super) fn moving_start(
     let moves = start.momentum.iter().any(|p| *p != 0.0);
     let found = match of_masses(model).first() {
         Some(&first) if is_end && moves => Err(first),
-        _ => momentum_slopes(model, (&control.start, start)),
+        _ => momentum_slopes(model, &control.start, start),
     };
     found.map_err(|index| BoundaryError::Parameter {
         name: control.parameters[index].name.clone(),
@@ -252,7 +252,8 @@ fn not_sought(model: &Model, boundary: &BoundaryConditions, place: &str) -> Opti
 /// Returns true if a state of rest is another one, or none, where a parameter takes other values.
 fn depends_on(
     model: &Model,
-    at: (&'static str, f64),
+    place: &'static str,
+    time: f64,
     voltages: &[f64],
     z: &[f64],
     index: usize,
@@ -273,7 +274,7 @@ fn depends_on(
         };
         let mut values: Vec<f64> = parameters.iter().map(|p| p.guess).collect();
         values[index] = value;
-        let Ok(found) = rest_with(model, voltages, &values, at) else {
+        let Ok(found) = rest_with(model, voltages, &values, place, time) else {
             return true;
         };
         let size = model.length();

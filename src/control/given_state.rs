@@ -27,7 +27,7 @@ pub fn resolve_start(
 ) -> Result<Start, BoundaryError> {
     match state {
         BoundaryState::RestAtVoltages(voltages, _) => {
-            at_rest(model, rest_at(model, voltages, (place, 0.0))?.z, place)
+            at_rest(model, rest_at(model, voltages, place, 0.0)?.z, place)
         }
         BoundaryState::JointAngles {
             angles,
@@ -152,7 +152,8 @@ const STRAIGHT: f64 = 1e-9;
 /// The index of a parameter with which the start changes otherwise than along a straight line in its momenta.
 pub fn momentum_slopes(
     model: &Model,
-    (state, start): (&BoundaryState, &mut Start),
+    state: &BoundaryState,
+    start: &mut Start,
 ) -> Result<Vec<MomentumSlopes>, usize> {
     if start.momentum.iter().all(|p| *p == 0.0) || matches!(state, BoundaryState::EndOf(_)) {
         return Ok(Vec::new());

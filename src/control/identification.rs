@@ -122,7 +122,8 @@ impl Recording {
     /// Its system and the free parameters of it.
     pub fn of<'a>(
         &'a self,
-        (system, parameters): (&'a System, &'a [Parameter]),
+        system: &'a System,
+        parameters: &'a [Parameter],
     ) -> (&'a System, &'a [Parameter]) {
         match &self.scene {
             Some(own) => (&own.system, &own.parameters),

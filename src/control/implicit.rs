@@ -96,7 +96,8 @@ impl ImplicitFunction {
         &self,
         program: &mut Transcription<'_>,
         x: &mut [f64],
-        (count, start): (usize, Option<&StartDerivatives>),
+        count: usize,
+        start: Option<&StartDerivatives>,
     ) -> Option<DMatrix<f64>> {
         if start.is_none() && program.model().action.map.multipliers > 0 {
             let (solver, _) = self.factored(program, x, count, start)?;

@@ -19,10 +19,10 @@
 
 use crate::control::problem::{Channel, Identification, Recording};
 use crate::identify::error::IdentifyError;
-use crate::identify::fit::{Data, Fit, Series, fit, weighted};
+use crate::identify::fit::{Data, Fit, Series};
 use crate::identify::information::Information;
-use crate::identify::prediction::{Grid, Unknowns, count_of_start, predict};
-use crate::model::System;
+use crate::identify::prediction::{Grid, Unknowns};
+use crate::identify::setup::Problem;
 use crate::stop;
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
@@ -72,38 +72,31 @@ impl HeldOut {
 
     /// The prediction of a recording by a fit.
     pub(super) fn new(
-        (system, task): (&System, &Identification),
+        problem: Problem<'_>,
         recording: usize,
-        (of, information): (&Fit, &Information),
+        of: &Fit,
+        information: &Information,
         grid: &Grid,
     ) -> Result<Self, IdentifyError> {
+        let task = problem.task;
         let mut unknowns = Unknowns::new(task, |_| 0);
         let constants = of.unknowns.of_constants();
         unknowns.values[..constants.len()].copy_from_slice(constants);
         let first = unknowns.values.len();
-        let count = count_of_start(system, task, &task.recordings[recording])?;
+        let count = problem.count_of_start(&task.recordings[recording])?;
         unknowns.values.resize(first + count, 0.0);
         unknowns.starts[recording] = first..first + count;
         let which = [recording];
         let mut data = Data::new(task, &which);
-        let channels = &task.recordings[recording].channels;
-        if let Some(channel) = channels
-            .iter()
-            .find(|c| of.data.deviation(c, 1.0).is_none())
-        {
-            return Err(IdentifyError::Refused {
-                recording: task.recordings[recording].name.clone(),
-                reason: format!(
-                    "nothing tells the standard deviation of {}, which no recording measures that constants are fitted to; expected one",
-                    channel.name
-                ),
-            });
+        let mut channels = task.recordings[recording].channels.iter();
+        if let Some(channel) = channels.find(|c| of.data.deviation(c, 1.0).is_none()) {
+            return Err(task.recordings[recording].refused(format!(
+                "nothing tells the standard deviation of {}, which no recording measures that constants are fitted to; expected one",
+                channel.name
+            )));
         }
         data.take(&of.data);
-        let on = |grid: &Grid| {
-            let unknowns = unknowns.clone();
-            fit((system, task), &which, (unknowns, constants.len()), grid)
-        };
+        let on = |grid: &Grid| problem.fit(&which, unknowns.clone(), constants.len(), grid);
         let (mut grid, mut found) = (grid.clone(), on(grid)?);
         // Its own steps may have to be shorter than those of the fit.
         for _ in 0..HALVINGS {
@@ -116,9 +109,8 @@ impl HeldOut {
                 break;
             }
         }
-        let whole = weighted(&found.prediction.derivatives, &data);
-        let residuals = &data.values - &found.prediction.values;
-        let mut residuals = residuals.component_div(&data.deviations);
+        let whole = data.weighted(&found.prediction);
+        let mut residuals = data.residuals(&found.prediction);
         let n = (residuals.len() - count) as f64;
         let series = data.series(task, &which, &found.prediction.values);
         let reduced = residuals.norm_squared() / n;
@@ -194,8 +186,8 @@ fn whitened(
     let svd = (by * root).svd(true, false);
     let u = svd.u.expect("asked for");
     let parts = u.transpose() * residuals;
-    let part = |(part, sigma): (&f64, &f64)| part * (1.0 - (1.0 + sigma * sigma).sqrt().recip());
-    let parts = parts.iter().zip(svd.singular_values.iter()).map(part);
+    let parts = parts.iter().zip(svd.singular_values.iter());
+    let parts = parts.map(|(part, s)| part * (1.0 - (1.0 + s * s).sqrt().recip()));
     residuals - &u * DVector::from_iterator(u.ncols(), parts)
 }
 
@@ -258,21 +250,21 @@ impl Rises {
     /// # Errors
     /// The recordings cannot be simulated at the estimate.
     pub(super) fn new(
-        (system, task): (&System, &Identification),
+        problem: Problem<'_>,
         fitted: &[usize],
-        (found, information): (&Fit, &Information),
+        found: &Fit,
+        information: &Information,
         grid: &Grid,
     ) -> Result<Self, IdentifyError> {
+        let task = problem.task;
         let jacobian = found.weighted();
         let residuals = found.residuals();
         let predicted = |values: &[f64]| {
             let mut unknowns = found.unknowns.clone();
             unknowns.values.copy_from_slice(values);
-            let own = predict((system, task), fitted, &unknowns, grid)?;
-            Ok::<_, IdentifyError>(
-                own.with_priors(&task.priors, unknowns.of_constants())
-                    .values,
-            )
+            let own = problem.predict(fitted, &unknowns, grid)?;
+            let own = own.with_priors(&task.priors, unknowns.of_constants());
+            Ok::<_, IdentifyError>(own.values)
         };
         let estimate = &found.unknowns.values;
         let here = predicted(estimate)?;
@@ -367,14 +359,14 @@ pub struct Experiment {
 impl Experiment {
     /// All candidates, the best one first: that which leaves fewest combinations undetermined, then the lowest sum of the relative variances.
     pub(super) fn all(
-        (system, task): (&System, &Identification),
-        (fit, halvings): (&Fit, usize),
+        problem: Problem<'_>,
+        fit: &Fit,
+        halvings: usize,
     ) -> Result<Vec<Self>, IdentifyError> {
         let of = |candidate| {
-            Self::new((system, task), candidate, (fit, halvings))
-                .map_err(IdentifyError::of_candidate)
+            Self::new(problem, candidate, fit, halvings).map_err(IdentifyError::of_candidate)
         };
-        let all: Result<Vec<_>, _> = (0..task.candidates.len()).map(of).collect();
+        let all: Result<Vec<_>, _> = (0..problem.task.candidates.len()).map(of).collect();
         let mut all = all?;
         all.sort_by(|a, b| a.rank().partial_cmp(&b.rank()).expect("numbers"));
         Ok(all)
@@ -390,16 +382,18 @@ impl Experiment {
     }
 
     fn new(
-        (system, task): (&System, &Identification),
+        problem: Problem<'_>,
         candidate: usize,
-        (fit, halvings): (&Fit, usize),
+        fit: &Fit,
+        halvings: usize,
     ) -> Result<Self, IdentifyError> {
+        let task = problem.task;
         let recording = &task.candidates[candidate];
         let alone = Identification {
             recordings: vec![recording.clone()],
             ..task.clone()
         };
-        let count = count_of_start(system, task, recording)?;
+        let count = problem.count_of_start(recording)?;
         let mut unknowns = Unknowns::new(&alone, |_| count);
         let constants = unknowns.constants;
         unknowns.values[..constants].copy_from_slice(fit.unknowns.of_constants());
@@ -407,7 +401,11 @@ impl Experiment {
         for _ in 0..halvings {
             grid = grid.halved();
         }
-        let added = predict((system, &alone), &[0], &unknowns, &grid)?.derivatives;
+        let one = Problem {
+            task: &alone,
+            ..problem
+        };
+        let added = one.predict(&[0], &unknowns, &grid)?.derivatives;
         let added = standardised(added, recording, fit)?;
         let before = fit.weighted();
         let (rows, columns) = before.shape();
@@ -424,7 +422,7 @@ impl Experiment {
         let values = fit.unknowns.of_constants();
         Ok(Self {
             candidate,
-            information: Information::new(task, (&whole, values), &fit.is_at_bound, freedom),
+            information: Information::new(task, &whole, values, &fit.is_at_bound, freedom),
         })
     }
 }
@@ -438,7 +436,7 @@ fn standardised(
     let mut row = 0;
     for channel in &candidate.channels {
         for reading in &channel.readings {
-            let deviation = deviation((candidate, channel), &fit.data, reading.deviation)?;
+            let deviation = deviation(candidate, channel, &fit.data, reading.deviation)?;
             let mut into = derivatives.row_mut(row);
             into /= deviation;
             row += 1;
@@ -450,21 +448,19 @@ fn standardised(
 /// Refuses a candidate with readings whose standard deviation is neither known nor estimated from these data.
 pub(super) fn check_deviations(candidate: &Recording, data: &Data) -> Result<(), IdentifyError> {
     let mut channels = candidate.channels.iter();
-    channels.try_for_each(|channel| deviation((candidate, channel), data, 1.0).map(|_| ()))
+    channels.try_for_each(|channel| deviation(candidate, channel, data, 1.0).map(|_| ()))
 }
 
 /// The standard deviation of a reading with this relative one.
 fn deviation(
-    (candidate, channel): (&Recording, &Channel),
+    candidate: &Recording,
+    channel: &Channel,
     data: &Data,
     relative: f64,
 ) -> Result<f64, IdentifyError> {
     let found = data.deviation(channel, relative);
-    found.ok_or_else(|| IdentifyError::Refused {
-        recording: candidate.name.clone(),
-        reason: format!(
-            "nothing tells the standard deviation of {}, which no recording measures whose deviation is estimated; expected one",
-            channel.name
-        ),
-    })
+    found.ok_or_else(|| candidate.refused(format!(
+        "nothing tells the standard deviation of {}, which no recording measures whose deviation is estimated; expected one",
+        channel.name
+    )))
 }

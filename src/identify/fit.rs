@@ -7,8 +7,10 @@
 
 use crate::control::problem::{Channel, Identification, Prior};
 use crate::identify::error::IdentifyError;
-use crate::identify::prediction::{Grid, Prediction, Unknowns, predict};
-use crate::model::{Quantity, System};
+use crate::identify::prediction::{Grid, Unknowns};
+use crate::identify::readout::Prediction;
+use crate::identify::setup::Problem;
+use crate::model::{Parameter, Quantity};
 use nalgebra::{DMatrix, DVector};
 
 /// A step that is smaller than this part of the standard errors is the last one.
@@ -56,7 +58,7 @@ pub struct Fit {
 impl Fit {
     /// Residuals in standard deviations.
     pub fn residuals(&self) -> DVector<f64> {
-        (&self.data.values - &self.prediction.values).component_div(&self.data.deviations)
+        self.data.residuals(&self.prediction)
     }
 
     /// The constants.
@@ -73,7 +75,7 @@ impl Fit {
 
     /// Derivatives in standard deviations.
     pub(super) fn weighted(&self) -> DMatrix<f64> {
-        weighted(&self.prediction.derivatives, &self.data)
+        self.data.weighted(&self.prediction)
     }
 
     /// Σ of the squared residuals.
@@ -97,19 +99,9 @@ impl Fit {
     }
 }
 
-/// Derivatives of readings in standard deviations.
-pub(super) fn weighted(derivatives: &DMatrix<f64>, data: &Data) -> DMatrix<f64> {
-    let mut out = derivatives.clone();
-    for (mut row, deviation) in out.row_iter_mut().zip(data.deviations.iter()) {
-        row /= *deviation;
-    }
-    out
-}
-
 /// A fit that is under way.
 struct Search<'a> {
-    system: &'a System,
-    task: &'a Identification,
+    problem: Problem<'a>,
     which: &'a [usize],
     grid: &'a Grid,
     /// Constants that are known beside the recordings; none where constants stay.
@@ -118,80 +110,75 @@ struct Search<'a> {
     held: usize,
 }
 
-/// Fits constants and starts to the recordings `which`, from the unknowns on; the first `held` constants stay.
-///
-/// # Errors
-/// The recordings cannot be simulated at the unknowns.
-pub fn fit(
-    (system, task): (&System, &Identification),
-    which: &[usize],
-    (unknowns, held): (Unknowns, usize),
-    grid: &Grid,
-) -> Result<Fit, IdentifyError> {
-    let search = Search {
-        system,
-        task,
-        which,
-        grid,
-        priors: if held == 0 { &task.priors } else { &[] },
-        held,
-    };
-    let mut data = Data::new(task, which).with_priors(search.priors);
-    let mut found = search.minimise(unknowns, data.clone())?;
-    if data.is_known() {
-        return Ok(found);
-    }
-    data.estimate(&found.prediction.values, found.free());
-    for _ in 1..ESTIMATES {
-        if data.is_scaled_alike() {
-            break;
+impl Problem<'_> {
+    /// Fits constants and starts to the recordings `which`, from the unknowns on; the first `held` constants stay.
+    ///
+    /// # Errors
+    /// The recordings cannot be simulated at the unknowns.
+    pub fn fit(
+        self,
+        which: &[usize],
+        unknowns: Unknowns,
+        held: usize,
+        grid: &Grid,
+    ) -> Result<Fit, IdentifyError> {
+        let search = Search {
+            problem: self,
+            which,
+            grid,
+            priors: if held == 0 { &self.task.priors } else { &[] },
+            held,
+        };
+        let mut data = Data::new(self.task, which).with_priors(search.priors);
+        let mut found = search.minimise(unknowns, data.clone())?;
+        if data.is_known() {
+            return Ok(found);
         }
-        let before = data.deviations.clone();
-        found = search.minimise(found.unknowns, data.clone())?;
         data.estimate(&found.prediction.values, found.free());
-        let change = (&data.deviations - &before).component_div(&before).amax();
-        if change < 10.0 * SMALL {
-            break;
+        for _ in 1..ESTIMATES {
+            if data.is_scaled_alike() {
+                break;
+            }
+            let before = data.deviations.clone();
+            found = search.minimise(found.unknowns, data.clone())?;
+            data.estimate(&found.prediction.values, found.free());
+            let change = (&data.deviations - &before).component_div(&before).amax();
+            if change < 10.0 * SMALL {
+                break;
+            }
         }
+        found.data = data;
+        Ok(found)
     }
-    found.data = data;
-    Ok(found)
 }
 
 impl Search<'_> {
+    /// The constant that an unknown is, where it is one.
+    fn parameter(&self, unknown: usize) -> Option<&Parameter> {
+        self.problem.task.parameters.get(unknown)
+    }
+
     fn minimise(&self, mut unknowns: Unknowns, data: Data) -> Result<Fit, IdentifyError> {
-        let of = (self.system, self.task);
         let at = |unknowns: &Unknowns| -> Result<Prediction, IdentifyError> {
-            let of_recordings = predict(of, self.which, unknowns, self.grid)?;
+            let of_recordings = self.problem.predict(self.which, unknowns, self.grid)?;
             Ok(of_recordings.with_priors(self.priors, unknowns.of_constants()))
         };
         let mut prediction = at(&unknowns)?;
-        let cost = |prediction: &Prediction| {
-            let difference = &data.values - &prediction.values;
-            difference.component_div(&data.deviations).norm_squared()
-        };
+        let cost = |prediction: &Prediction| data.residuals(prediction).norm_squared();
         let mut best = cost(&prediction);
         let [mut damping, none] = DAMPING;
         let (mut ended, mut steps) = (Ended::Unfinished, 0);
         'steps: while steps < MOST {
             steps += 1;
-            let jacobian = weighted(&prediction.derivatives, &data);
-            let difference = &data.values - &prediction.values;
-            let residuals = difference.component_div(&data.deviations);
+            let (jacobian, residuals) = (data.weighted(&prediction), data.residuals(&prediction));
             let free = self.free(&unknowns, &jacobian, &(jacobian.transpose() * &residuals));
+            let norms = self.damping(&jacobian, &free);
             loop {
-                let step = damped(
-                    &jacobian,
-                    &residuals,
-                    &self.damping(&jacobian, &free),
-                    damping,
-                );
+                let step = damped(&jacobian, &residuals, &norms, damping);
                 let next = self.moved(&unknowns, &step);
-                let change = &jacobian
-                    * DVector::from_iterator(
-                        step.len(),
-                        next.values.iter().zip(&unknowns.values).map(|(a, b)| a - b),
-                    );
+                let moved = next.values.iter().zip(&unknowns.values);
+                let moved = DVector::from_iterator(step.len(), moved.map(|(a, b)| a - b));
+                let change = &jacobian * moved;
                 let freedom = data.values.len().saturating_sub(free.len()).max(1);
                 let scatter = match data.is_known() {
                     true => 1.0,
@@ -223,7 +210,7 @@ impl Search<'_> {
             ended = Ended::Converged;
         }
         Ok(Fit {
-            is_at_bound: self.at_bounds(&unknowns, &weighted(&prediction.derivatives, &data)),
+            is_at_bound: self.at_bounds(&unknowns, &data.weighted(&prediction)),
             unknowns,
             prediction,
             ended,
@@ -234,8 +221,7 @@ impl Search<'_> {
 
     /// Returns true if the squares fall along no unknown by more than a part of its standard error.
     fn is_minimum(&self, unknowns: &Unknowns, prediction: &Prediction, data: &Data) -> bool {
-        let jacobian = weighted(&prediction.derivatives, data);
-        let residuals = (&data.values - &prediction.values).component_div(&data.deviations);
+        let (jacobian, residuals) = (data.weighted(prediction), data.residuals(prediction));
         let descent = jacobian.transpose() * &residuals;
         let free = self.free(unknowns, &jacobian, &descent);
         let scatter = match data.is_known() {
@@ -254,12 +240,7 @@ impl Search<'_> {
     /// Free unknowns with the norms D by which they are damped.
     fn damping(&self, jacobian: &DMatrix<f64>, free: &[usize]) -> Vec<(usize, f64)> {
         let norm = |j: usize| jacobian.column(j).norm();
-        let size = |j: usize| {
-            self.task
-                .parameters
-                .get(j)
-                .map(crate::model::Parameter::size)
-        };
+        let size = |j: usize| self.parameter(j).map(Parameter::size);
         let effects = free
             .iter()
             .filter_map(|&j| size(j).map(|size| norm(j) * size));
@@ -275,7 +256,7 @@ impl Search<'_> {
         jacobian: &DMatrix<f64>,
         descent: &DVector<f64>,
     ) -> Vec<usize> {
-        let is_free = |&j: &usize| match self.task.parameters.get(j) {
+        let is_free = |&j: &usize| match self.parameter(j) {
             Some(parameter) => {
                 let value = unknowns.values[j];
                 let at_lower = value <= parameter.lower && descent[j] < 0.0;
@@ -292,7 +273,7 @@ impl Search<'_> {
         let mut next = unknowns.clone();
         for (j, value) in next.values.iter_mut().enumerate() {
             *value += step[j];
-            if let Some(parameter) = self.task.parameters.get(j) {
+            if let Some(parameter) = self.parameter(j) {
                 *value = value.clamp(parameter.lower, parameter.upper);
             }
         }
@@ -302,20 +283,21 @@ impl Search<'_> {
     fn is_rounding(&self, unknowns: &Unknowns, next: &Unknowns) -> bool {
         let mut pairs = unknowns.values.iter().zip(&next.values).enumerate();
         pairs.all(|(j, (a, b))| {
-            let size = self.task.parameters.get(j).map_or(0.0, |p| p.size());
+            let size = self.parameter(j).map_or(0.0, Parameter::size);
             (a - b).abs() <= ROUNDING * a.abs().max(1e-3 * size)
         })
     }
 
     /// Constants at a bound, or nearer to one than a hundredth of the standard error that each would have alone.
     fn at_bounds(&self, unknowns: &Unknowns, jacobian: &DMatrix<f64>) -> Vec<bool> {
-        let all = self.task.parameters.iter().zip(&unknowns.values);
-        let is_at = |(j, (p, &value)): (usize, (&crate::model::Parameter, &f64))| {
-            let near = LEVEL / jacobian.column(j).norm();
-            let near = if near.is_finite() { near } else { 0.0 };
-            j >= self.held && (value <= p.lower + near || value >= p.upper - near)
-        };
-        all.enumerate().map(is_at).collect()
+        let all = self.problem.task.parameters.iter().zip(&unknowns.values);
+        all.enumerate()
+            .map(|(j, (p, &value))| {
+                let near = LEVEL / jacobian.column(j).norm();
+                let near = if near.is_finite() { near } else { 0.0 };
+                j >= self.held && (value <= p.lower + near || value >= p.upper - near)
+            })
+            .collect()
     }
 }
 
@@ -454,6 +436,20 @@ impl Data {
         self
     }
 
+    /// Residuals of a prediction in standard deviations.
+    pub(super) fn residuals(&self, prediction: &Prediction) -> DVector<f64> {
+        (&self.values - &prediction.values).component_div(&self.deviations)
+    }
+
+    /// Derivatives of a prediction in standard deviations.
+    pub(super) fn weighted(&self, prediction: &Prediction) -> DMatrix<f64> {
+        let mut out = prediction.derivatives.clone();
+        for (mut row, deviation) in out.row_iter_mut().zip(self.deviations.iter()) {
+            row /= *deviation;
+        }
+        out
+    }
+
     /// The deviation of a channel whose readings have this relative one; none where nothing tells it.
     pub(super) fn deviation(&self, channel: &Channel, relative: f64) -> Option<f64> {
         if channel.is_deviation_known {
@@ -510,10 +506,10 @@ impl Data {
         // Each group loses its share of the unknowns.
         let all = self.values.len() as f64;
         let part = (all - unknowns as f64).max(1.0) / all;
-        let sigma = |([sum, count], range): (&[f64; 2], &f64)| {
-            (sum / (count * part)).sqrt().max(LEAST * range)
-        };
-        let of_groups = sums.iter().zip(&self.ranges).map(sigma).collect();
+        let of_groups = sums.iter().zip(&self.ranges);
+        let of_groups = of_groups
+            .map(|([sum, count], range)| (sum / (count * part)).sqrt().max(LEAST * range))
+            .collect();
         self.set(of_groups);
     }
 

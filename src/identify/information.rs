@@ -5,6 +5,7 @@
 
 use crate::control::problem::Identification;
 use crate::identify::fit::Fit;
+use crate::model::Parameter;
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor, Normal, StudentsT};
 
@@ -74,13 +75,14 @@ impl Information {
     pub(super) fn of_fit(task: &Identification, fit: &Fit) -> Self {
         let freedom = (!fit.data.is_known()).then(|| fit.freedom().max(1));
         let values = fit.unknowns.of_constants();
-        Self::new(task, (&fit.weighted(), values), &fit.is_at_bound, freedom)
+        Self::new(task, &fit.weighted(), values, &fit.is_at_bound, freedom)
     }
 
     /// The information of derivatives in standard deviations.
     pub(super) fn new(
         task: &Identification,
-        (weighted, values): (&DMatrix<f64>, &[f64]),
+        weighted: &DMatrix<f64>,
+        values: &[f64],
         is_held: &[bool],
         freedom: Option<usize>,
     ) -> Self {
@@ -96,8 +98,9 @@ impl Information {
         let (factor, ellipsoid) = quantiles(inside, freedom);
         let [singular, directions] = without(own, &starts.into_owned());
         let least = ROUND_OFF * singular.amax();
-        let (known, open): (Vec<usize>, Vec<usize>) =
-            (0..constants).partition(|&k| singular[k] > least);
+        let is_known = |&k: &usize| singular[k] > least;
+        let known: Vec<usize> = (0..constants).filter(is_known).collect();
+        let open: Vec<usize> = (0..constants).filter(|k| !is_known(k)).collect();
         let relative = by_directions(&directions, &known, |k| singular[k].recip());
         let unknown = by_directions(&directions, &open, |_| least.recip());
         let is_wide = |j: usize| {
@@ -133,7 +136,7 @@ impl Information {
             finite_variance: known.iter().map(|&k| singular[k].powi(-2)).sum(),
         };
         if let [only] = &mut out.undetermined[..] {
-            only.determined = product(only, values, (&directions, &known), deviation);
+            only.determined = product(only, values, &directions, &known, deviation);
         }
         out
     }
@@ -148,14 +151,15 @@ impl Fit {
 
 /// Sizes of the constants: themselves where they are positive, otherwise the distance of their bounds.
 fn scales(task: &Identification, values: &[f64]) -> Vec<f64> {
-    let scale = |(parameter, value): (&crate::model::Parameter, &f64)| match parameter.lower > 0.0 {
-        true => *value,
-        false => match parameter.upper - parameter.lower {
-            width if width.is_finite() => width,
-            _ => value.abs().max(parameter.size()),
-        },
+    let scale = |parameter: &Parameter, value: f64| match parameter.upper - parameter.lower {
+        _ if parameter.lower > 0.0 => value,
+        width if width.is_finite() => width,
+        _ => value.abs().max(parameter.size()),
     };
-    task.parameters.iter().zip(values).map(scale).collect()
+    let pairs = task.parameters.iter().zip(values);
+    pairs
+        .map(|(parameter, value)| scale(parameter, *value))
+        .collect()
 }
 
 /// Factor of intervals and square of the ellipsoid.
@@ -305,7 +309,8 @@ fn named(direction: &[f64]) -> Vec<(usize, f64)> {
 fn product(
     open: &Undetermined,
     values: &[f64],
-    (directions, known): (&DMatrix<f64>, &[usize]),
+    directions: &DMatrix<f64>,
+    known: &[usize],
     deviation: impl Fn(usize) -> f64,
 ) -> Option<Product> {
     let ([(a, p), (b, q)], 2) = (&open.powers[..], open.constants.len()) else {

@@ -18,7 +18,9 @@ mod setup;
 
 pub use assessment::{Experiment, HeldOut, Rises, Whiteness, ljung_box};
 pub use error::IdentifyError;
-pub use fit::{Ended, Fit, Series, fit};
+pub use fit::{Ended, Fit, Series};
 pub use information::{Information, Product, Undetermined};
-pub use prediction::{Grid, Prediction, Unknowns, predict};
+pub use prediction::{Grid, Unknowns};
+pub use readout::Prediction;
 pub use refine::{Bias, FoundStart, Identified, NONE, first_model, found_starts, identify};
+pub use setup::Problem;

@@ -4,16 +4,13 @@
 //! fourth order, and so are its derivatives.
 
 use crate::control::StartDerivatives;
-use crate::control::problem::{
-    BoundaryState, Identification, Prior, Recording, Regime, SoughtStart, Voltages,
-};
+use crate::control::problem::{BoundaryState, Identification, Prior, Recording, Regime, Voltages};
 use crate::dynamics::{DiscreteTrajectory, Equilibrium, Start, simulate};
 use crate::identify::error::IdentifyError;
-use crate::identify::readout::{Beginning, Course, CourseDerivatives, Values, derivatives};
-use crate::identify::setup::Setup;
+use crate::identify::readout::{Beginning, Course, CourseDerivatives, Prediction, derivatives};
+use crate::identify::setup::{Problem, Setup};
 use crate::math::{cores, has_pool};
-use crate::model::{Constant, System};
-use nalgebra::{DMatrix, DVector};
+use crate::model::Constant;
 use rayon::prelude::*;
 use std::ops::{ControlFlow, Range};
 
@@ -100,15 +97,6 @@ fn meeting(recording: &Recording, least: usize) -> (usize, bool) {
     (found.unwrap_or(least), found.is_some())
 }
 
-/// Values and derivatives of all readings of some recordings by all unknowns.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Prediction {
-    /// Values, recording by recording, channel by channel.
-    pub values: DVector<f64>,
-    /// Derivatives.
-    pub derivatives: DMatrix<f64>,
-}
-
 impl Prediction {
     /// The same with constants that are known beside the recordings, as readings behind all others.
     #[must_use]
@@ -127,94 +115,99 @@ impl Prediction {
     }
 }
 
-/// Number of unknowns of the start of a recording.
-pub(super) fn count_of_start(
-    system: &System,
-    task: &Identification,
-    recording: &Recording,
-) -> Result<usize, IdentifyError> {
-    if recording.sought_start == SoughtStart::Nothing {
-        return Ok(0);
+impl<'a> Problem<'a> {
+    /// Number of unknowns of the start of a recording.
+    pub(super) fn count_of_start(self, recording: &'a Recording) -> Result<usize, IdentifyError> {
+        if !recording.seeks_start() {
+            return Ok(0);
+        }
+        let grid = [recording.duration(), 4.0];
+        self.setup(recording, &self.guesses(), grid)?
+            .count_of_start()
     }
-    let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
-    let setup = Setup::new(
-        system,
-        task,
-        recording,
-        &guesses,
-        [recording.duration(), 4.0],
-    )?;
-    setup.count_of_start()
-}
 
-/// The prediction of one recording, extrapolated.
-fn of_recording(
-    system: &System,
-    task: &Identification,
-    recording: &Recording,
-    point: Point<'_>,
-    intervals: usize,
-) -> Result<Values, IdentifyError> {
-    let on = |intervals| readings(system, task, recording, point, intervals);
-    if recording.regime == Regime::Rest {
-        return on(intervals);
-    }
-    let (coarse, fine) = (on(intervals)?, on(2 * intervals)?);
-    Ok(Values {
-        values: (fine.values * 4.0 - coarse.values) / 3.0,
-        derivatives: (fine.derivatives * 4.0 - coarse.derivatives) / 3.0,
-    })
-}
-
-/// The recordings `which` of a task, by all unknowns, with derivatives.
-///
-/// # Errors
-/// A recording cannot be simulated.
-pub fn predict(
-    (system, task): (&System, &Identification),
-    which: &[usize],
-    unknowns: &Unknowns,
-    grid: &Grid,
-) -> Result<Prediction, IdentifyError> {
-    let of = |&r: &usize| {
-        let point = Point {
-            constants: unknowns.of_constants(),
-            start: unknowns.of_start(r),
+    /// The recordings `which`, by all unknowns, with derivatives.
+    ///
+    /// # Errors
+    /// A recording cannot be simulated.
+    pub fn predict(
+        self,
+        which: &[usize],
+        unknowns: &Unknowns,
+        grid: &Grid,
+    ) -> Result<Prediction, IdentifyError> {
+        let of = |&r: &usize| {
+            let point = Point {
+                constants: unknowns.of_constants(),
+                start: unknowns.of_start(r),
+            };
+            self.extrapolated(&self.task.recordings[r], point, grid.intervals[r])
         };
-        let recording = &task.recordings[r];
-        of_recording(system, task, recording, point, grid.intervals[r])
-    };
-    let parts: Vec<_> = match which.len() > 1 && cores() > 1 && has_pool() {
-        true => which.par_iter().map(of).collect(),
-        false => which.iter().map(of).collect(),
-    };
-    let parts: Vec<Values> = parts.into_iter().collect::<Result<_, _>>()?;
-    let rows = parts.iter().map(|part| part.values.len()).sum();
-    let mut out = Prediction {
-        values: DVector::zeros(rows),
-        derivatives: DMatrix::zeros(rows, unknowns.values.len()),
-    };
-    let (mut row, constants) = (0, unknowns.constants);
-    for (&r, part) in which.iter().zip(&parts) {
-        let (count, of_start) = (part.values.len(), unknowns.starts[r].clone());
-        out.values.rows_mut(row, count).copy_from(&part.values);
-        let mut rows = out.derivatives.rows_mut(row, count);
-        let by = &part.derivatives;
-        rows.columns_mut(0, constants)
-            .copy_from(&by.columns(0, constants));
-        let own = by.columns(constants, of_start.len());
-        rows.columns_mut(of_start.start, of_start.len())
-            .copy_from(&own);
-        row += count;
+        let parts: Vec<_> = match which.len() > 1 && cores() > 1 && has_pool() {
+            true => which.par_iter().map(of).collect(),
+            false => which.iter().map(of).collect(),
+        };
+        let parts: Vec<Prediction> = parts.into_iter().collect::<Result<_, _>>()?;
+        let rows = parts.iter().map(|part| part.values.len()).sum();
+        let mut out = Prediction::zeros(rows, unknowns.values.len());
+        let (mut row, constants) = (0, unknowns.constants);
+        for (&r, part) in which.iter().zip(&parts) {
+            let (count, of_start) = (part.values.len(), unknowns.starts[r].clone());
+            out.values.rows_mut(row, count).copy_from(&part.values);
+            let mut rows = out.derivatives.rows_mut(row, count);
+            let by = &part.derivatives;
+            rows.columns_mut(0, constants)
+                .copy_from(&by.columns(0, constants));
+            let own = by.columns(constants, of_start.len());
+            rows.columns_mut(of_start.start, of_start.len())
+                .copy_from(&own);
+            row += count;
+        }
+        Ok(out)
     }
-    Ok(out)
+
+    /// The prediction of one recording, extrapolated.
+    fn extrapolated(
+        self,
+        recording: &'a Recording,
+        point: Point<'_>,
+        intervals: usize,
+    ) -> Result<Prediction, IdentifyError> {
+        let on = |intervals| self.readings(recording, point, intervals);
+        if recording.regime == Regime::Rest {
+            return on(intervals);
+        }
+        let (coarse, fine) = (on(intervals)?, on(2 * intervals)?);
+        Ok(Prediction {
+            values: (fine.values * 4.0 - coarse.values) / 3.0,
+            derivatives: (fine.derivatives * 4.0 - coarse.derivatives) / 3.0,
+        })
+    }
+
+    /// The readings of a recording on a grid of intervals, by constants and then unknowns of the start.
+    fn readings(
+        self,
+        recording: &'a Recording,
+        point: Point<'_>,
+        intervals: usize,
+    ) -> Result<Prediction, IdentifyError> {
+        let duration = match recording.regime {
+            Regime::Motion => recording.duration(),
+            Regime::Rest => intervals as f64,
+        };
+        let setup = self.setup(recording, point.constants, [duration, intervals as f64])?;
+        match recording.regime {
+            Regime::Motion => in_motion(&setup, point, intervals),
+            Regime::Rest => at_rest(&setup, point),
+        }
+    }
 }
 
 /// Values of all unknowns of one recording.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Point<'a> {
-    pub(super) constants: &'a [f64],
-    pub(super) start: &'a [f64],
+struct Point<'a> {
+    constants: &'a [f64],
+    start: &'a [f64],
 }
 
 impl Point<'_> {
@@ -223,31 +216,11 @@ impl Point<'_> {
     }
 }
 
-/// The readings of a recording on a grid of intervals, by constants and then unknowns of the start.
-pub(super) fn readings(
-    system: &System,
-    task: &Identification,
-    recording: &Recording,
-    point: Point<'_>,
-    intervals: usize,
-) -> Result<Values, IdentifyError> {
-    let duration = match recording.regime {
-        Regime::Motion => recording.duration(),
-        Regime::Rest => intervals as f64,
-    };
-    let grid = [duration, intervals as f64];
-    let setup = Setup::new(system, task, recording, point.constants, grid)?;
-    match recording.regime {
-        Regime::Motion => in_motion(&setup, point, intervals),
-        Regime::Rest => at_rest(&setup, point),
-    }
-}
-
 fn in_motion(
     setup: &Setup<'_>,
     point: Point<'_>,
     intervals: usize,
-) -> Result<Values, IdentifyError> {
+) -> Result<Prediction, IdentifyError> {
     let (model, recording) = (&setup.model, setup.recording);
     let h = recording.duration() / intervals as f64;
     let (start, by_start) = start_of(setup, point)?;
@@ -287,7 +260,7 @@ fn start_of(
     point: Point<'_>,
 ) -> Result<(Start, StartDerivatives), IdentifyError> {
     let constants = point.constants.len();
-    let (start, mut out) = setup.start((constants, point.start))?;
+    let (start, mut out) = setup.start(constants, point.start)?;
     if let BoundaryState::RestAtVoltages(voltages, _) = &setup.control.start {
         let state = setup.rest_under(voltages)?;
         let voltages = Voltages::Constant(voltages.clone());
@@ -324,12 +297,9 @@ fn of_rest(
 }
 
 /// States of rest, one for each time of a reading.
-fn at_rest(setup: &Setup<'_>, point: Point<'_>) -> Result<Values, IdentifyError> {
+fn at_rest(setup: &Setup<'_>, point: Point<'_>) -> Result<Prediction, IdentifyError> {
     let recording = setup.recording;
-    let mut out = Values {
-        values: DVector::zeros(recording.count()),
-        derivatives: DMatrix::zeros(recording.count(), point.count()),
-    };
+    let mut out = Prediction::zeros(recording.count(), point.count());
     let mut times: Vec<f64> = recording.readings().map(|reading| reading.time).collect();
     times.sort_unstable_by(f64::total_cmp);
     times.dedup();

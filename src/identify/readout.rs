@@ -2,7 +2,7 @@
 //!
 //! Exact derivatives of a discrete motion by constants, start coordinates and start momenta.
 
-use crate::control::problem::{Channel, Reading, Regime, Voltages};
+use crate::control::problem::{Channel, Regime, Voltages};
 use crate::control::{
     Argument, BoundaryConditions, Column, ImplicitFunction, InitialGuess, StartDerivatives,
     Transcription, ends_that_read,
@@ -28,13 +28,23 @@ pub(super) struct Course<'a> {
     pub(super) is_still: bool,
 }
 
-/// Values and derivatives of readings.
+/// Values and derivatives of readings by unknowns.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Values {
-    /// Value of each reading.
+pub struct Prediction {
+    /// Values, recording by recording, channel by channel.
     pub values: DVector<f64>,
-    /// Row of derivatives of each reading.
+    /// A row of derivatives for each.
     pub derivatives: DMatrix<f64>,
+}
+
+impl Prediction {
+    /// Room for a number of readings.
+    pub(super) fn zeros(readings: usize, unknowns: usize) -> Self {
+        Self {
+            values: DVector::zeros(readings),
+            derivatives: DMatrix::zeros(readings, unknowns),
+        }
+    }
 }
 
 /// Values at times of a grid, and their derivatives.
@@ -48,30 +58,27 @@ struct Scratch {
 
 impl Course<'_> {
     /// All channels at their readings.
-    pub(super) fn read(&self, channels: &[Channel], columns: usize) -> Values {
+    pub(super) fn read(&self, channels: &[Channel], columns: usize) -> Prediction {
         let count: usize = channels.iter().map(|one| one.readings.len()).sum();
-        let mut out = Values {
-            values: DVector::zeros(count),
-            derivatives: DMatrix::zeros(count, columns),
-        };
-        let instants: Vec<Configuration> = self.placed();
+        let mut out = Prediction::zeros(count, columns);
+        let map = &self.model.action.map;
+        let instants: Vec<Configuration> = self.discrete.z.iter().map(|z| map.placed(z)).collect();
         let mut row = 0;
         for channel in channels {
             for (factor, quantity) in &channel.parts {
                 let nodes = self.nodes(&instants, quantity, columns);
-                let readings = channel.readings.iter().enumerate();
-                readings.for_each(|(k, reading)| {
-                    self.interpolate(quantity, &nodes, reading, (*factor, row + k), &mut out);
-                });
+                for (row, reading) in (row..).zip(&channel.readings) {
+                    let (begin, weights) = self.weights(quantity, nodes.0.len(), reading.time);
+                    for (node, weight) in (begin..).zip(weights) {
+                        out.values[row] += factor * weight * nodes.0[node];
+                        let mut into = out.derivatives.row_mut(row);
+                        into += &nodes.1[node] * (factor * weight);
+                    }
+                }
             }
             row += channel.readings.len();
         }
         out
-    }
-
-    fn placed(&self) -> Vec<Configuration> {
-        let map = &self.model.action.map;
-        self.discrete.z.iter().map(|z| map.placed(z)).collect()
     }
 
     /// Times from which and between which values are known: instants, middles of intervals, or instants between two intervals.
@@ -84,28 +91,20 @@ impl Course<'_> {
         }
     }
 
-    fn interpolate(
-        &self,
-        quantity: &Quantity,
-        (values, derivatives): &Nodes,
-        reading: &Reading,
-        (factor, row): (f64, usize),
-        out: &mut Values,
-    ) {
-        let grid = self.grid(quantity);
-        let jumps = quantity.before().is_some();
-        let (begin, weights) = match self.is_still {
-            true => (0, vec![1.0]),
-            false => {
-                let piece = piece(reading.time, &self.corners, (grid, values.len()), jumps);
-                weights(reading.time, grid, piece)
-            }
-        };
-        for (j, weight) in weights.iter().enumerate() {
-            out.values[row] += factor * weight * values[begin + j];
-            let mut into = out.derivatives.row_mut(row);
-            into += &derivatives[begin + j] * (factor * weight);
+    /// First of the nodes from which a quantity at a time in ms is interpolated, and their weights.
+    fn weights(&self, quantity: &Quantity, nodes: usize, time: f64) -> (usize, Vec<f64>) {
+        if self.is_still {
+            return (0, vec![1.0]);
         }
+        let grid = self.grid(quantity);
+        let piece = piece(
+            time,
+            &self.corners,
+            grid,
+            nodes,
+            quantity.before().is_some(),
+        );
+        weights(time, grid, piece)
     }
 
     /// Values of a quantity at all instants or in all intervals, and their derivatives; of one that is a step between intervals its rates.
@@ -230,10 +229,11 @@ const FEWEST: usize = 4;
 const OFF: f64 = 1e-6;
 
 /// Points between the corners around a time, a corner counting to what follows; without those at the corners where values jump.
-pub(super) fn piece(
+fn piece(
     time: f64,
     corners: &[f64],
-    ([first, h], points): ([f64; 2], usize),
+    [first, h]: [f64; 2],
+    points: usize,
     jumps: bool,
 ) -> Range<usize> {
     let begin = corners.iter().copied().filter(|c| *c <= time + OFF * h);
@@ -250,18 +250,13 @@ pub(super) fn piece(
     }
 }
 
-/// First of the points of a piece that a value at a time follows from, their number, and the time after it in steps.
-fn local(time: f64, [first, h]: [f64; 2], points: Range<usize>) -> (usize, usize, f64) {
+/// First of the points of a piece that a value at a time follows from, and their weights; the error is of fourth order in `h`.
+fn weights(time: f64, [first, h]: [f64; 2], points: Range<usize>) -> (usize, Vec<f64>) {
     let count = points.len().min(4);
     let place = (time - first) / h;
     let last = (points.end - count) as f64;
     let begin = (place.floor() - 1.0).clamp(points.start as f64, last) as usize;
-    (begin, count, place - begin as f64)
-}
-
-/// First of the points of a piece that a value at a time follows from, and their weights; the error is of fourth order in `h`.
-pub(super) fn weights(time: f64, grid: [f64; 2], points: Range<usize>) -> (usize, Vec<f64>) {
-    let (begin, count, s) = local(time, grid, points);
+    let s = place - begin as f64;
     let weight = |j: usize| {
         let others = (0..count).filter(|&i| i != j);
         let factor = |i: usize| (s - i as f64) / (j as f64 - i as f64);
@@ -316,16 +311,14 @@ pub(super) fn derivatives(
     let function = ImplicitFunction::new(&program, regime, known(setup, discrete, regime));
     let function = function.expect("a motion follows from its start");
     let mut x = program.encode(&initial.discrete, h);
-    let by = (from.unknowns, from.derivatives);
-    let Some(solved) = function.derivatives(&mut program, &mut x, by) else {
+    let solved = function.derivatives(&mut program, &mut x, from.unknowns, from.derivatives);
+    let Some(solved) = solved else {
         return Err(setup.refused("the equations of its derivatives are singular".to_owned()));
     };
-    let parts = (&program, &function);
+    let columns = program.unknowns().columns.iter().copied();
+    let columns = columns.zip(&function.columns);
     Ok(CourseDerivatives::new(
-        setup,
-        parts,
-        (&solved, from),
-        intervals,
+        model, columns, &solved, from, intervals,
     ))
 }
 
@@ -344,26 +337,27 @@ fn known<'a>(
             let times = [discrete.times[k], discrete.times[k + 1]];
             let interval = (regime == Regime::Motion).then_some(times);
             let value = discrete.scalars[k][s];
-            setup.inputs.slopes((source, value), interval)
+            setup.inputs.slopes(source, value, interval)
         }
         _ => None,
     }
 }
 
 impl CourseDerivatives {
-    /// Those of all instants and intervals out of the unknowns.
-    fn new(
-        setup: &Setup<'_>,
-        (program, function): (&Transcription<'_>, &ImplicitFunction),
-        (solved, from): (&DMatrix<f64>, Beginning<'_>),
+    /// Those of all instants and intervals out of the unknowns, by the columns of the program with their parts in its equations.
+    fn new<'c>(
+        model: &Model,
+        columns: impl Iterator<Item = (Column, &'c Argument)>,
+        solved: &DMatrix<f64>,
+        from: Beginning<'_>,
         intervals: usize,
     ) -> Self {
-        let (n, count) = (setup.model.coordinate_count(), from.unknowns);
-        let measures = setup.model.action.intervals.measures.iter();
+        let (n, count) = (model.coordinate_count(), from.unknowns);
+        let measures = model.action.intervals.measures.iter();
         let mut read: Vec<usize> = measures.flat_map(|one| one.scalars()).collect();
         read.sort_unstable();
         read.dedup();
-        let parameters = setup.model.variables.range(Role::Parameter);
+        let parameters = model.variables.range(Role::Parameter);
         // A free parameter is a scalar of all intervals.
         let by_itself = DMatrix::from_fn(read.len(), count, |row, column| {
             let is_own = parameters.contains(&read[row]) && read[row] - parameters.start == column;
@@ -377,9 +371,8 @@ impl CourseDerivatives {
         if let Some(by_start) = from.derivatives {
             out.instants[0].clone_from(&by_start.coordinates);
         }
-        let columns = program.unknowns().columns.iter().zip(&function.columns);
         for (column, meaning) in columns {
-            let unknown = match (*column, meaning) {
+            let unknown = match (column, meaning) {
                 (_, Argument::Unknown(unknown)) => *unknown,
                 (Column::Interval { k, s }, Argument::Known(slopes)) => {
                     if let Ok(row) = out.read.binary_search(&s) {
@@ -390,7 +383,7 @@ impl CourseDerivatives {
                 }
                 _ => continue,
             };
-            match *column {
+            match column {
                 Column::Instant { k, i } if i < n => {
                     out.instants[k].set_row(i, &solved.row(unknown));
                 }

@@ -1,15 +1,15 @@
 //! The whole identification: grids are refined until their bias is far below the standard errors, then all is assessed.
 
-use crate::control::problem::{BoundaryState, Identification, Recording, Regime, SoughtStart};
-use crate::dynamics::{observations, simulate};
+use crate::control::problem::{BoundaryState, Identification, Reading, Recording, Regime};
+use crate::dynamics::{Start, observations, simulate};
 use crate::identify::assessment::{
     Experiment, HeldOut, LEVEL, Rises, Whiteness, check_deviations, ljung_box,
 };
 use crate::identify::error::IdentifyError;
-use crate::identify::fit::{Data, Fit, Series, fit};
+use crate::identify::fit::{Data, Fit, Series};
 use crate::identify::information::Information;
-use crate::identify::prediction::{Grid, Unknowns, count_of_start};
-use crate::identify::setup::Setup;
+use crate::identify::prediction::{Grid, Unknowns};
+use crate::identify::setup::Problem;
 use crate::model::{Model, System, check_parameters, joint_unit};
 use crate::stop;
 use nalgebra::{DMatrix, DVector};
@@ -108,19 +108,19 @@ pub fn identify(
     told: &mut dyn FnMut(&Fit, &Grid),
 ) -> Result<Identified, IdentifyError> {
     check(system, task)?;
+    let problem = Problem { system, task };
     let fitted: Vec<usize> = (0..task.recordings.len())
         .filter(|&r| !task.recordings[r].is_held_out)
         .collect();
-    let unknowns = begin(system, task, &fitted)?;
-    let (found, information, grids, bias) = refined(system, task, &fitted, unknowns, told)?;
+    let unknowns = begin(problem, &fitted)?;
+    let (found, information, grids, bias) = refined(problem, &fitted, unknowns, told)?;
     let grid = grids.last().expect("the first one").clone();
     let coarser = &grids[grids.len().saturating_sub(1 + COARSER)];
-    let rises = Rises::new((system, task), &fitted, (&found, &information), coarser)?;
+    let rises = Rises::new(problem, &fitted, &found, &information, coarser)?;
     let held_out = (0..task.recordings.len()).filter(|r| !fitted.contains(r));
-    let predicted =
-        held_out.map(|r| HeldOut::new((system, task), r, (&found, &information), &grid));
+    let predicted = held_out.map(|r| HeldOut::new(problem, r, &found, &information, &grid));
     let held_out = predicted.collect::<Result<_, _>>()?;
-    let experiments = Experiment::all((system, task), (&found, bias.halvings))?;
+    let experiments = Experiment::all(problem, &found, bias.halvings)?;
     let series = found.data.series(task, &fitted, &found.prediction.values);
     let p = found.data.is_known().then(|| {
         let freedom = found.freedom().max(1) as f64;
@@ -158,27 +158,19 @@ fn check(system: &System, task: &Identification) -> Result<(), IdentifyError> {
 
 /// Refuses starts whose coordinates depend on a constant otherwise than by a state of rest, whose derivatives are known: memories of given
 /// coordinates that read a length.
-fn fixed_starts(
-    system: &System,
-    task: &Identification,
-    recording: &Recording,
-) -> Result<(), IdentifyError> {
+fn fixed_starts(problem: Problem<'_>, recording: &Recording) -> Result<(), IdentifyError> {
     if matches!(recording.start, BoundaryState::RestAtVoltages(..))
         || recording.regime == Regime::Rest
     {
         return Ok(());
     }
-    let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
-    let grid = [recording.duration(), 4.0];
-    let at = |values: &[f64]| {
-        Ok::<_, IdentifyError>(
-            Setup::new(system, task, recording, values, grid)?
-                .given_start()?
-                .0,
-        )
+    let guesses = problem.guesses();
+    let at = |values: &[f64]| -> Result<Start, IdentifyError> {
+        let setup = problem.setup(recording, values, [recording.duration(), 4.0])?;
+        Ok(setup.given_start()?.0)
     };
     let start = at(&guesses)?;
-    for (j, parameter) in task.parameters.iter().enumerate() {
+    for (j, parameter) in problem.task.parameters.iter().enumerate() {
         let mut values = guesses.clone();
         values[j] = match parameter.guess < parameter.upper {
             true => {
@@ -188,19 +180,12 @@ fn fixed_starts(
             false => parameter.lower,
         };
         let other = at(&values)?;
-        if start
-            .z
-            .iter()
-            .zip(&other.z)
-            .any(|(a, b)| (a - b).abs() > SAME * a.abs().max(b.abs()))
-        {
+        let mut pairs = start.z.iter().zip(&other.z);
+        if pairs.any(|(a, b)| (a - b).abs() > SAME * a.abs().max(b.abs())) {
             let name = &parameter.name;
-            return Err(IdentifyError::Refused {
-                recording: recording.name.clone(),
-                reason: format!(
-                    "its start depends on {name}; expected a start at rest, with \"sought_start\": \"state\" where it moves"
-                ),
-            });
+            return Err(recording.refused(format!(
+                "its start depends on {name}; expected a start at rest, with \"sought_start\": \"state\" where it moves"
+            )));
         }
     }
     Ok(())
@@ -212,41 +197,35 @@ fn fixed_starts(
 /// It does not exist.
 pub fn first_model(system: &System, task: &Identification) -> Result<Model, IdentifyError> {
     check(system, task)?;
-    let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
+    let problem = Problem { system, task };
     let recording = &task.recordings[0];
     // A single state of rest has no duration.
     let duration = Some(recording.duration()).filter(|duration| *duration > 0.0);
     let grid = [duration.unwrap_or(1.0), 4.0];
-    Ok(Setup::new(system, task, recording, &guesses, grid)?.model)
+    Ok(problem.setup(recording, &problem.guesses(), grid)?.model)
 }
 
 /// The first unknowns, of data that can tell them.
-fn begin(
-    system: &System,
-    task: &Identification,
-    fitted: &[usize],
-) -> Result<Unknowns, IdentifyError> {
+fn begin(problem: Problem<'_>, fitted: &[usize]) -> Result<Unknowns, IdentifyError> {
+    let task = problem.task;
     for recording in &task.recordings {
-        fixed_starts(system, task, recording)?;
+        fixed_starts(problem, recording)?;
     }
     let data = Data::new(task, fitted);
     for candidate in &task.candidates {
-        fixed_starts(system, task, candidate)
+        fixed_starts(problem, candidate)
             .and_then(|()| check_deviations(candidate, &data))
             .map_err(IdentifyError::of_candidate)?;
     }
-    let count = |&r: &usize| count_of_start(system, task, &task.recordings[r]);
+    let count = |&r: &usize| problem.count_of_start(&task.recordings[r]);
     let held_out = (0..task.recordings.len()).filter(|&r| task.recordings[r].is_held_out);
     for r in held_out {
         let (recording, of_start) = (&task.recordings[r], count(&r)?);
         if recording.count() <= of_start {
-            return Err(IdentifyError::Refused {
-                recording: recording.name.clone(),
-                reason: format!(
-                    "{of_start} unknowns of the start are fitted to {} of its readings, which leaves nothing to check; expected more readings",
-                    recording.count()
-                ),
-            });
+            return Err(recording.refused(format!(
+                "{of_start} unknowns of the start are fitted to {} of its readings, which leaves nothing to check; expected more readings",
+                recording.count()
+            )));
         }
     }
     let counts: Vec<usize> = fitted.iter().map(count).collect::<Result<_, _>>()?;
@@ -263,7 +242,7 @@ fn begin(
     let is_still = |&r: &usize| {
         let recording = &task.recordings[r];
         let mut channels = recording.channels.iter();
-        let same = |pair: &[crate::control::problem::Reading]| pair[0].value == pair[1].value;
+        let same = |pair: &[Reading]| pair[0].value == pair[1].value;
         recording.regime == Regime::Motion
             && channels.all(|channel| channel.readings.windows(2).all(same))
     };
@@ -275,15 +254,15 @@ fn begin(
 
 /// Fits on grids of halved steps, which are told, until constants change by less than a tenth of their standard errors.
 fn refined(
-    system: &System,
-    task: &Identification,
+    problem: Problem<'_>,
     fitted: &[usize],
     unknowns: Unknowns,
     told: &mut dyn FnMut(&Fit, &Grid),
 ) -> Result<(Fit, Information, Vec<Grid>, Bias), IdentifyError> {
+    let task = problem.task;
     let mut grid = Grid::first(task, &task.recordings);
     let mut grids = vec![grid.clone()];
-    let mut found = fit((system, task), fitted, (unknowns, 0), &grid)?;
+    let mut found = problem.fit(fitted, unknowns, 0, &grid)?;
     unread(task, &found)?;
     let mut information = Information::of_fit(task, &found);
     told(&found, &grid);
@@ -308,7 +287,7 @@ fn refined(
             break;
         }
         let before = found.clone();
-        found = fit((system, task), fitted, (before.unknowns.clone(), 0), &finer)?;
+        found = problem.fit(fitted, before.unknowns.clone(), 0, &finer)?;
         grid = finer;
         grids.push(grid.clone());
         told(&found, &grid);
@@ -404,22 +383,18 @@ pub fn found_starts(
     task: &Identification,
     found: &Identified,
 ) -> Result<Vec<FoundStart>, IdentifyError> {
-    let is_sought = |&&r: &&usize| task.recordings[r].sought_start != SoughtStart::Nothing;
-    let of = |&recording: &usize| FoundStart::new(system, task, (found, recording));
+    let is_sought = |&&r: &&usize| task.recordings[r].seeks_start();
+    let of = |&recording: &usize| FoundStart::new(Problem { system, task }, found, recording);
     found.fitted.iter().filter(is_sought).map(of).collect()
 }
 
 impl FoundStart {
-    fn new(
-        system: &System,
-        task: &Identification,
-        (found, index): (&Identified, usize),
-    ) -> Result<Self, IdentifyError> {
-        let recording = &task.recordings[index];
+    fn new(problem: Problem<'_>, found: &Identified, index: usize) -> Result<Self, IdentifyError> {
+        let recording = &problem.task.recordings[index];
         let intervals = 2.0 * found.grid.intervals[index] as f64;
         let grid = [recording.duration(), intervals];
-        let setup = Setup::new(system, task, recording, found.fit.of_constants(), grid)?;
-        let (start, _) = setup.start((0, found.fit.unknowns.of_start(index)))?;
+        let setup = problem.setup(recording, found.fit.of_constants(), grid)?;
+        let (start, _) = setup.start(0, found.fit.unknowns.of_start(index))?;
         let model = &setup.model;
         let scalars = |from: f64, to: f64| model.scalars(&setup.inputs.within(from, to));
         // Tables tell a state at its instant.

@@ -29,6 +29,15 @@ use crate::model::{
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
+/// Constants of a system that recordings are to determine.
+#[derive(Clone, Copy, Debug)]
+pub struct Problem<'a> {
+    /// The system.
+    pub system: &'a System,
+    /// The constants and the recordings.
+    pub task: &'a Identification,
+}
+
 /// The model of a recording on a grid.
 #[derive(Debug)]
 pub(super) struct Setup<'a> {
@@ -40,53 +49,54 @@ pub(super) struct Setup<'a> {
     pub(super) model: Model,
 }
 
-impl<'a> Setup<'a> {
-    /// The model at values of the constants, with steps of `h` ms.
-    pub(super) fn new(
-        system: &System,
-        task: &Identification,
+impl<'a> Problem<'a> {
+    /// Guesses of the constants.
+    pub(super) fn guesses(self) -> Vec<f64> {
+        self.task.parameters.iter().map(|p| p.guess).collect()
+    }
+
+    /// The model of a recording at values of the constants, with intervals of about equal length over a duration in ms.
+    pub(super) fn setup(
+        self,
         recording: &'a Recording,
         constants: &[f64],
         [duration, intervals]: [f64; 2],
-    ) -> Result<Self, IdentifyError> {
-        let at = |(parameter, &value): (&Parameter, &f64)| Parameter {
-            guess: value,
-            ..parameter.clone()
-        };
-        let (system, parameters) = recording.of((system, &task.parameters));
-        let parameters: Vec<_> = parameters.iter().zip(constants).map(at).collect();
+    ) -> Result<Setup<'a>, IdentifyError> {
+        let (system, parameters) = recording.of(self.system, &self.task.parameters);
+        let parameters = parameters.iter().zip(constants);
+        let parameters: Vec<Parameter> = parameters
+            .map(|(parameter, &guess)| Parameter {
+                guess,
+                ..parameter.clone()
+            })
+            .collect();
         let mut system = with_parameters(system, &parameters, constants);
         let drive = Drive::new(system.sources().len(), &parameters, constants);
         let start = drive.start(&recording.start);
-        let inputs = Inputs::new(drive, &recording.voltages, (&mut system, &start));
+        let inputs = Inputs::new(drive, &recording.voltages, &mut system, &start);
         let voltages = &inputs.undelayed;
         let control = Control {
             parameters,
-            coordinates: task.coordinates,
+            coordinates: self.task.coordinates,
             ..Control::of_course(&start, voltages, duration, intervals as usize)
         };
+        let read = |quantity| match ends_that_read(&quantity, &control.parameters) {
+            Some(ends) => ends.to_vec(),
+            None => vec![quantity],
+        };
         let mut analysis = Analysis {
-            quantities: recording
-                .quantities()
-                .flat_map(
-                    |quantity| match ends_that_read(&quantity, &control.parameters) {
-                        Some(ends) => ends.to_vec(),
-                        None => vec![quantity],
-                    },
-                )
-                .collect(),
+            quantities: recording.quantities().flat_map(read).collect(),
             ..control.analysis(&system, duration / intervals)
         };
         // Forces and charges are there where nothing moves too.
-        let is_force = |quantity: Quantity| lasts(&quantity);
-        if recording.sought_start != SoughtStart::Nothing || recording.quantities().any(is_force) {
+        if recording.seeks_start() || recording.quantities().any(|quantity| lasts(&quantity)) {
             analysis.initially_moving = None;
         }
         for source in recording.quantities().filter_map(|q| q.source()) {
             analysis.zero_inputs.remove(&source);
         }
         let model = Model::for_analysis(system, analysis);
-        let setup = Self {
+        let setup = Setup {
             model: model.map_err(|error| recording.wrong(error.into()))?,
             control,
             recording,
@@ -96,7 +106,9 @@ impl<'a> Setup<'a> {
         setup.check()?;
         Ok(setup)
     }
+}
 
+impl Setup<'_> {
     /// Refuses what derivatives by the start are not offered for.
     fn check(&self) -> Result<(), IdentifyError> {
         let parameters = self.control.parameters.iter();
@@ -119,8 +131,7 @@ impl<'a> Setup<'a> {
             }
         }
         let is_of_rest = matches!(self.recording.start, BoundaryState::RestAtVoltages(..));
-        let is_sought = self.recording.sought_start != SoughtStart::Nothing;
-        if is_of_rest && is_sought && self.model.action.map.multipliers > 0 {
+        if is_of_rest && self.recording.seeks_start() && self.model.action.map.multipliers > 0 {
             return Err(self.refused(
                 "an unknown start near a state of rest is offered in joint coordinates alone; expected a start with \"joint_angles\""
                     .to_owned(),
@@ -130,17 +141,14 @@ impl<'a> Setup<'a> {
     }
 
     pub(super) fn refused(&self, reason: String) -> IdentifyError {
-        IdentifyError::Refused {
-            recording: self.recording.name.clone(),
-            reason,
-        }
+        self.recording.refused(reason)
     }
 
     /// The start that the recording gives, and the changes of its momenta with sought masses.
     pub(super) fn given_start(&self) -> Result<(Start, Vec<MomentumSlopes>), IdentifyError> {
         let found = resolve_start(&self.model, &self.start, "start");
         let mut start = found.map_err(|error| self.recording.wrong(error))?;
-        let slopes = momentum_slopes(&self.model, (&self.start, &mut start));
+        let slopes = momentum_slopes(&self.model, &self.start, &mut start);
         let slopes = slopes.map_err(|index| {
             let name = &self.control.parameters[index].name;
             self.refused(format!(
@@ -152,7 +160,7 @@ impl<'a> Setup<'a> {
 
     /// The changes of the start that are unknowns; none where it is given.
     fn changes(&self, start: &Start) -> Result<Option<IndependentChanges<'_>>, IdentifyError> {
-        if self.recording.sought_start == SoughtStart::Nothing {
+        if !self.recording.seeks_start() {
             return Ok(None);
         }
         let found = IndependentChanges::at(&self.model, start.z.clone());
@@ -175,7 +183,8 @@ impl<'a> Setup<'a> {
     /// The start with changes of its coordinates and momenta, and its derivatives by the constants that masses read, then by these changes.
     pub(super) fn start(
         &self,
-        (constants, values): (usize, &[f64]),
+        constants: usize,
+        values: &[f64],
     ) -> Result<(Start, StartDerivatives), IdentifyError> {
         let (mut start, lines) = self.given_start()?;
         let (n, count) = (self.model.coordinate_count(), constants + values.len());
@@ -216,7 +225,7 @@ impl<'a> Setup<'a> {
 
     /// The equilibrium under voltages in V, by source.
     pub(super) fn rest_under(&self, voltages: &[f64]) -> Result<Equilibrium, IdentifyError> {
-        let found = rest_at(&self.model, voltages, ("rest", 0.0));
+        let found = rest_at(&self.model, voltages, "rest", 0.0);
         found.map_err(|error| self.recording.wrong(error))
     }
 
@@ -236,10 +245,23 @@ impl<'a> Setup<'a> {
 }
 
 impl Recording {
+    /// Returns true if something of the state at its start is unknown.
+    pub(super) fn seeks_start(&self) -> bool {
+        self.sought_start != SoughtStart::Nothing
+    }
+
     /// All quantities, channel by channel, with those that are subtracted in the intervals before.
     pub(super) fn quantities(&self) -> impl Iterator<Item = Quantity> {
         let parts = self.channels.iter().flat_map(|channel| &channel.parts);
         parts.flat_map(|(_, quantity)| [quantity.clone()].into_iter().chain(quantity.before()))
+    }
+
+    /// That it is not offered.
+    pub(super) fn refused(&self, reason: String) -> IdentifyError {
+        IdentifyError::Refused {
+            recording: self.name.clone(),
+            reason,
+        }
     }
 
     pub(super) fn wrong(&self, source: BoundaryError) -> IdentifyError {
@@ -341,8 +363,8 @@ impl Drive {
     pub(super) fn start<'a>(&self, said: &'a BoundaryState) -> Cow<'a, BoundaryState> {
         match said {
             BoundaryState::RestAtVoltages(row, rest) if self.gains.iter().any(Option::is_some) => {
-                let of = |(source, value): (usize, &f64)| self.factor(source) * value;
-                let row = row.iter().enumerate().map(of).collect();
+                let row = row.iter().enumerate();
+                let row = row.map(|(s, value)| self.factor(s) * value).collect();
                 Cow::Owned(BoundaryState::RestAtVoltages(row, *rest))
             }
             _ => Cow::Borrowed(said),
@@ -367,7 +389,8 @@ impl<'a> Inputs<'a> {
     pub(super) fn new(
         drive: Drive,
         said: &'a Voltages,
-        (system, start): (&mut System, &BoundaryState),
+        system: &mut System,
+        start: &BoundaryState,
     ) -> Self {
         let undelayed = drive.voltages(said);
         let before = match start {
@@ -410,7 +433,8 @@ impl<'a> Inputs<'a> {
     /// where nothing of the source is sought.
     pub(super) fn slopes(
         &self,
-        (source, value): (usize, f64),
+        source: usize,
+        value: f64,
         interval: Option<[f64; 2]>,
     ) -> Option<Vec<(usize, f64)>> {
         let Drive { gains, delays } = &self.drive;
@@ -442,11 +466,11 @@ impl<'a> Inputs<'a> {
     fn delayed(&self, source: usize, delay: f64, [from, to]: [f64; 2]) -> Delayed {
         let h = to - from;
         let weighted = |of: fn(f64) -> f64| {
-            let own = self.weighted((source, delay), [from, to], of);
+            let own = self.weighted(source, delay, [from, to], of);
             match from > 0.0 {
                 true => own,
                 false => {
-                    let earlier = self.weighted((source, delay), [from - h, from], of);
+                    let earlier = self.weighted(source, delay, [from - h, from], of);
                     Delayed {
                         value: own.value + earlier.value - of(self.before[source]),
                         slope: own.slope + earlier.slope,
@@ -473,7 +497,8 @@ impl<'a> Inputs<'a> {
     /// The weighted mean of a function of a delayed input in an interval.
     fn weighted(
         &self,
-        (source, delay): (usize, f64),
+        source: usize,
+        delay: f64,
         [from, to]: [f64; 2],
         of: fn(f64) -> f64,
     ) -> Delayed {

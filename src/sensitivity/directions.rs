@@ -233,7 +233,7 @@ impl<'a> Directions<'a> {
         };
         let start = resolve_start(self.model(), &unit, "start");
         let mut start = start.map_err(NoSensitivity::refused)?;
-        let slopes = momentum_slopes(self.model(), (&unit, &mut start));
+        let slopes = momentum_slopes(self.model(), &unit, &mut start);
         slopes.map_err(|_| NoSensitivity::refused("momenta are no straight line in a mass"))?;
         let rows = self.program.unknowns().rows.iter().enumerate();
         let rows = rows.filter_map(|(row, of)| match *of {
@@ -393,7 +393,7 @@ fn solved(
     let function = ImplicitFunction::new(&program, Regime::Rest, known)?;
     let count = parameters.len() + sources.len();
     let mut x = program.encode(&initial.discrete, initial.h);
-    let solved = function.derivatives(&mut program, &mut x, (count, None))?;
+    let solved = function.derivatives(&mut program, &mut x, count, None)?;
     let mut out = DMatrix::zeros(n, count);
     let columns = program.unknowns().columns.iter().zip(&function.columns);
     for (column, argument) in columns {

@@ -328,7 +328,7 @@ fn rests(
     };
     let start = match &control.start {
         BoundaryState::RestAtVoltages(voltages, _) if control.goal != BoundaryState::Periodic => {
-            let state = rest_at(model, voltages, ("start", 0.0)).map_err(NoSensitivity::refused)?;
+            let state = rest_at(model, voltages, "start", 0.0).map_err(NoSensitivity::refused)?;
             Some(at_rest(state, voltages))
         }
         _ => None,

@@ -7,7 +7,7 @@ use proboscis::Signal;
 use proboscis::control::problem::{
     Identification, Reading, Recording, Regime, SoughtStart, Voltages,
 };
-use proboscis::identify::{Grid, Unknowns, identify, ljung_box, predict};
+use proboscis::identify::{Grid, Problem, Unknowns, identify, ljung_box};
 use proboscis::math::Random;
 use proboscis::model::{MaterialConstant, MaxwellBranch, MaxwellBranches, System};
 use proboscis::prelude::{Material, kpa};
@@ -67,7 +67,8 @@ fn measure(task: &mut Identification, system: &System, seed: u64) {
         meets_corners: vec![true; 8],
     };
     for r in 0..task.recordings.len() {
-        let truth = predict((system, task), &[r], &unknowns, &grid)
+        let truth = Problem { system, task }
+            .predict(&[r], &unknowns, &grid)
             .unwrap()
             .values;
         let readings = &mut task.recordings[r].channels[0].readings;

@@ -5,7 +5,7 @@ use proboscis::control::problem::{
     Identification, Reading, Recording, Regime, SoughtStart, Task, Voltages,
 };
 use proboscis::files::read_problem;
-use proboscis::identify::{Grid, Unknowns, fit, predict};
+use proboscis::identify::{Grid, Problem, Unknowns};
 use proboscis::math::Random;
 use proboscis::model::{Constant, MaterialConstant, System};
 use proboscis::prelude::{Material, kpa};
@@ -29,7 +29,8 @@ fn coverage(
         meets_corners: vec![true],
     };
     let unknowns = Unknowns::of_values(truth, &[start]);
-    let exact = predict((system, task), &[0], &unknowns, &grid)
+    let exact = Problem { system, task }
+        .predict(&[0], &unknowns, &grid)
         .unwrap()
         .values;
     let mut counts = vec![Count::default(); truth.len()];
@@ -44,7 +45,12 @@ fn coverage(
         for prior in &mut task.priors {
             prior.value = truth[prior.constant] + prior.deviation * noise.normal();
         }
-        let found = fit((system, &task), &[0], (unknowns.clone(), 0), &grid).unwrap();
+        let found = Problem {
+            system,
+            task: &task,
+        }
+        .fit(&[0], unknowns.clone(), 0, &grid)
+        .unwrap();
         let information = found.information(&task);
         for (j, count) in counts.iter_mut().enumerate() {
             if information.is_determined[j] && !found.is_at_bound[j] {

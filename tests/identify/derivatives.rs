@@ -6,7 +6,7 @@ use proboscis::Signal;
 use proboscis::control::problem::{
     BoundaryState, Channel, Identification, Reading, Recording, Regime, SoughtStart, Voltages,
 };
-use proboscis::identify::{Grid, Unknowns, predict};
+use proboscis::identify::{Grid, Problem, Unknowns};
 use proboscis::model::system::ElectricConstants;
 use proboscis::model::{
     Constant, Coordinates, Follower, MaterialConstant, MaxwellBranch, MaxwellBranches, Parameter,
@@ -36,7 +36,11 @@ pub(crate) fn channel(parts: Vec<(f64, Quantity)>, readings: Vec<Reading>) -> Ch
 pub(crate) fn compare(system: &System, task: &Identification, unknowns: &Unknowns) -> Vec<f64> {
     let which: Vec<usize> = (0..task.recordings.len()).collect();
     let grid = Grid::first(task, &task.recordings);
-    let at = |unknowns: &Unknowns| predict((system, task), &which, unknowns, &grid).unwrap();
+    let at = |unknowns: &Unknowns| {
+        Problem { system, task }
+            .predict(&which, unknowns, &grid)
+            .unwrap()
+    };
     let found = at(unknowns);
     let mut largest = Vec::new();
     for j in 0..unknowns.values.len() {

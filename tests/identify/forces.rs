@@ -10,7 +10,7 @@ use proboscis::control::problem::{
     Channel, Identification, Recording, Regime, SoughtStart, Voltages,
 };
 use proboscis::dynamics::{observations, simulate};
-use proboscis::identify::{Ended, Fit, Grid, Unknowns, fit, predict};
+use proboscis::identify::{Ended, Fit, Grid, Problem, Unknowns};
 use proboscis::model::components::{Load, LoadPlace};
 use proboscis::model::system::ElectricConstants;
 use proboscis::model::{
@@ -197,7 +197,12 @@ fn forces_and_charges_are_those_of_tables() {
         meets_corners: vec![true; 8],
     };
     let unknowns = Unknowns::of_values(&[], &[&[]]);
-    let found = predict((&system, &task), &[0], &unknowns, &grid).unwrap();
+    let found = Problem {
+        system: &system,
+        task: &task,
+    }
+    .predict(&[0], &unknowns, &grid)
+    .unwrap();
     // A simulation in steps of 0.05 ms.
     let intervals = 1600;
     let model = Model::new(system.clone(), None, 0.05, &[]).unwrap();
@@ -262,12 +267,12 @@ fn constants_come_back_from_forces_and_from_circuits() {
 /// The fit of the constants to the only recording on a grid of intervals, from their guesses on.
 pub(crate) fn converged(system: &System, task: &Identification, intervals: usize) -> Fit {
     let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
-    let begin = (Unknowns::of_values(&guesses, &[&[]]), 0);
+    let begin = Unknowns::of_values(&guesses, &[&[]]);
     let grid = Grid {
         intervals: vec![intervals],
         meets_corners: vec![true; 8],
     };
-    let found = fit((system, task), &[0], begin, &grid).unwrap();
+    let found = Problem { system, task }.fit(&[0], begin, 0, &grid).unwrap();
     assert_eq!(found.ended, Ended::Converged);
     found
 }
@@ -290,9 +295,13 @@ fn recovered(quantities: &[Quantity], names: &[&str]) {
         meets_corners: vec![true; 8],
     };
     let unknowns = Unknowns::of_values(&[], &[&[]]);
-    let values = predict((&twin, &alone), &[0], &unknowns, &grid)
-        .unwrap()
-        .values;
+    let values = Problem {
+        system: &twin,
+        task: &alone,
+    }
+    .predict(&[0], &unknowns, &grid)
+    .unwrap()
+    .values;
     let mut row = 0;
     for channel in &mut task.recordings[0].channels {
         let size = values.rows(row, channel.readings.len()).amax();

@@ -8,7 +8,7 @@ use proboscis::Signal;
 use proboscis::control::problem::{
     BoundaryState, Identification, Reading, Recording, Regime, SoughtStart, Voltages,
 };
-use proboscis::identify::{Grid, Unknowns, identify, predict};
+use proboscis::identify::{Grid, Problem, Unknowns, identify};
 use proboscis::math::Random;
 use proboscis::model::components::{Load, LoadPlace};
 use proboscis::model::{Constant, Parameter, Quantity, System};
@@ -196,9 +196,13 @@ fn by_hand(truth: [f64; 3]) -> (System, Identification) {
     let mut grid = Grid::first(&known, &known.recordings);
     // Voltages switch at instants.
     grid.intervals = vec![3600];
-    let seen = predict((&system, &known), &[0], &unknowns, &grid)
-        .unwrap()
-        .values;
+    let seen = Problem {
+        system: &system,
+        task: &known,
+    }
+    .predict(&[0], &unknowns, &grid)
+    .unwrap()
+    .values;
     let channels = task.recordings[0].channels.iter_mut();
     let readings = channels.flat_map(|one| &mut one.readings);
     for (reading, value) in readings.zip(seen.iter()) {
@@ -248,7 +252,12 @@ fn a_switched_voltage_moves_a_muscle_later_by_its_square() {
     let mut grid = Grid::first(&task, &task.recordings);
     grid.intervals = vec![301];
     let unknowns = Unknowns::of_values(&truth, &[&[]]);
-    let found = predict((&system, &task), &[0], &unknowns, &grid).unwrap();
+    let found = Problem {
+        system: &system,
+        task: &task,
+    }
+    .predict(&[0], &unknowns, &grid)
+    .unwrap();
     let largest = expected
         .iter()
         .fold(0.0, |most: f64, slope| most.max(slope.abs()));

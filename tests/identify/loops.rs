@@ -8,7 +8,7 @@ use proboscis::control::problem::{
     BoundaryState, Identification, Recording, Regime, SoughtStart, Voltages,
 };
 use proboscis::files::read_problem;
-use proboscis::identify::{Grid, Unknowns, predict};
+use proboscis::identify::{Grid, Problem, Unknowns};
 use proboscis::model::system::ElectricConstants;
 use proboscis::model::{Coordinates, MaterialConstant, Quantity, System};
 use std::path::Path;
@@ -106,7 +106,12 @@ fn both_coordinates_tell_the_same_of_states_of_rest() {
         let values: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
         let grid = Grid::first(&task, &task.recordings);
         let unknowns = Unknowns::of_values(&values, &[&[]]);
-        predict((&system, &task), &[0], &unknowns, &grid).unwrap()
+        Problem {
+            system: &system,
+            task: &task,
+        }
+        .predict(&[0], &unknowns, &grid)
+        .unwrap()
     };
     let (reduced, redundant) = (of(None), of(Some(Coordinates::Redundant)));
     let distance = |a: &DVector<f64>, b: &DVector<f64>| (a - b).amax() / a.amax();

@@ -5,7 +5,7 @@ use proboscis::Signal;
 use proboscis::control::problem::{
     Identification, Reading, Recording, Regime, SoughtStart, Voltages,
 };
-use proboscis::identify::{Grid, Product, Unknowns, identify, predict};
+use proboscis::identify::{Grid, Problem, Product, Unknowns, identify};
 use proboscis::math::Random;
 use proboscis::model::components::{Load, LoadPlace};
 use proboscis::model::system::ElectricConstants;
@@ -69,9 +69,13 @@ pub(crate) fn task(recordings: Vec<Recording>) -> Identification {
     let grid = Grid::first(&task, &task.recordings);
     let random = &mut Random::new(2);
     for r in 0..task.recordings.len() {
-        let truth = predict((&system(), &task), &[r], &unknowns, &grid)
-            .unwrap()
-            .values;
+        let truth = Problem {
+            system: &system(),
+            task: &task,
+        }
+        .predict(&[r], &unknowns, &grid)
+        .unwrap()
+        .values;
         for (reading, value) in task.recordings[r].channels[0]
             .readings
             .iter_mut()

@@ -9,7 +9,7 @@ use proboscis::control::problem::{
     BoundaryState, Channel, Identification, Reading, Recording, Regime, SoughtStart, Voltages,
 };
 use proboscis::energy::ElasticLaw;
-use proboscis::identify::{Ended, Grid, Unknowns, identify, predict};
+use proboscis::identify::{Ended, Grid, Problem, Unknowns, identify};
 use proboscis::mesh::grid::Grid as Boxes;
 use proboscis::model::system::{Attachment, ElectricConstants, Marker, Material, System};
 use proboscis::model::{MaterialConstant, Parameter, Quantity, with_parameters};
@@ -102,16 +102,15 @@ fn modulus_and_viscosity_of_a_block_are_recovered_from_a_marker() {
         ..task.clone()
     };
     let unknowns = Unknowns::of_values(&[], &[&[][..]]);
-    let values = predict(
-        (&truth, &nothing),
-        &[0],
-        &unknowns,
-        &Grid {
-            intervals: vec![240],
-            meets_corners: vec![true; 8],
-        },
-    );
-    let values = values.unwrap().values;
+    let grid = Grid {
+        intervals: vec![240],
+        meets_corners: vec![true; 8],
+    };
+    let problem = Problem {
+        system: &truth,
+        task: &nothing,
+    };
+    let values = problem.predict(&[0], &unknowns, &grid).unwrap().values;
     let way = values
         .iter()
         .fold(0.0_f64, |way, z| way.max((z - 4.0).abs()));

@@ -3,7 +3,7 @@
 use crate::oscillator::{DAMPING, STIFFNESS, place, recording, system, task};
 use nalgebra::{Matrix2, Vector2};
 use proboscis::control::problem::{Recording, SoughtStart};
-use proboscis::identify::{Grid, Unknowns, fit, identify};
+use proboscis::identify::{Grid, Problem, Unknowns, identify};
 use proboscis::math::Random;
 
 /// Constants that fit the closed form to a recording from rest at 5 mm, by Newton's method on the sum of squares with differences.
@@ -104,7 +104,12 @@ fn holds_truth(seed: u64) -> bool {
         intervals: vec![10],
         meets_corners: vec![true; 8],
     };
-    let found = fit((&system(), &task), &[0], (begin, 0), &grid).unwrap();
+    let found = Problem {
+        system: &system(),
+        task: &task,
+    }
+    .fit(&[0], begin, 0, &grid)
+    .unwrap();
     let information = found.information(&task);
     let values = found.of_constants();
     let off = Vector2::new(values[0] - STIFFNESS, values[1] - DAMPING);
