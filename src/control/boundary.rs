@@ -229,9 +229,9 @@ fn start_of(
     match start {
         BoundaryState::RestAtVoltages(voltages, _) => {
             let rest = rest_at(model, voltages, "start", 0.0)?;
-            Ok((at_rest(model, rest.z, "start")?, Some(rest.scalars)))
+            Ok((at_rest(model, rest.z)?, Some(rest.scalars)))
         }
-        state => Ok((resolve_start(model, state, "start")?, None)),
+        state => Ok((resolve_start(model, state)?, None)),
     }
 }
 
@@ -315,9 +315,9 @@ fn all_joints_given(system: &System, goal: &BoundaryState) -> bool {
         return false;
     };
     let coordinates = system.joint_coordinates();
-    let named = |(j, c): (usize, &Option<usize>)| c.is_none() || angles.contains_key(&j);
+    let mut coordinates = coordinates.iter().enumerate();
     Graph::new(system).has_one_coordinate_a_joint(system)
-        && coordinates.iter().enumerate().all(named)
+        && coordinates.all(|(j, c)| c.is_none() || angles.contains_key(&j))
 }
 
 /// Parts of an interval by which a waypoint may miss an instant.
@@ -427,8 +427,6 @@ pub(super) fn check_sought_hold(model: &Model, control: &Control) -> Result<(), 
         false => None,
     };
     reason.map_or(Ok(()), |reason| {
-        Err(BoundaryError::Hold {
-            reason: reason.to_owned(),
-        })
+        Err(BoundaryError::refused("goal.hold", reason))
     })
 }

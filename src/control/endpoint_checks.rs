@@ -11,7 +11,7 @@ use crate::dynamics::BeyondLaw;
 use crate::energy::{Energy, OutsideBox, SquaredDistance};
 use crate::functional::Sample;
 use crate::math::{Local, significant};
-use crate::model::{Coordinates, Model, Of, Quantity, Region, Role, Time, Variable, What};
+use crate::model::{Coordinates, Model, Of, Quantity, Region, Role, Time, What};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -28,8 +28,7 @@ pub(super) fn check(
     let unknown = || unknown_reaction(model, boundary);
     let reason = contradiction(model, boundary, control).or_else(beyond);
     if let Some(reason) = reason.or_else(unknown) {
-        let place = "limits";
-        return Err(BoundaryError::Limit { place, reason });
+        return Err(BoundaryError::refused("limits", reason));
     }
     given_amounts(model, boundary, control)?;
     let is_known = control.goal != BoundaryState::Periodic;
@@ -50,7 +49,7 @@ pub(super) fn check(
             "start" => control.middle(0),
             _ => control.middle(control.intervals - 1),
         };
-        let mut end = End::new(model, (control, time), coordinates, charts, scalars);
+        let mut end = End::new(model, control, time, coordinates, charts, scalars);
         end.is_at_rest = matches!(state, BoundaryState::RestAtVoltages(..));
         match state {
             _ if !is_known => {}
@@ -88,7 +87,7 @@ pub(super) fn check(
             values.find_map(|(b, value)| b.broken(value?, &model.system))
         };
         if let Some(reason) = of_joints.or_else(bounded) {
-            return Err(BoundaryError::Limit { place, reason });
+            return Err(BoundaryError::refused(place, reason));
         }
     }
     Ok(())
@@ -121,7 +120,8 @@ struct End<'a> {
 impl<'a> End<'a> {
     fn new(
         model: &'a Model,
-        (control, time): (&Control, f64),
+        control: &Control,
+        time: f64,
         coordinates: &[Option<f64>],
         charts: &[f64],
         scalars: Option<Vec<f64>>,
@@ -144,13 +144,13 @@ impl<'a> End<'a> {
             instant,
             known: coordinates[..count].iter().map(Option::is_some).collect(),
             scalars: {
-                let variables = model.variables.of(Time::Interval).iter();
-                let known = |(s, variable): (usize, &Variable)| match (&scalars, variable.role) {
+                let variables = model.variables.of(Time::Interval).iter().enumerate();
+                let known = variables.map(|(s, variable)| match (&scalars, variable.role) {
                     (_, Role::Parameter) => None,
                     (Some(scalars), _) => Some(scalars[s]),
                     (None, _) => control.given(variable, time),
-                };
-                variables.enumerate().map(known).collect()
+                });
+                known.collect()
             },
             is_at_rest: false,
             angles: BTreeMap::new(),
@@ -312,10 +312,8 @@ pub(super) fn given_amounts(
         };
         let value = amount.of(muscles, &model.system) / bounded.quantity.unit;
         if let Some(broken) = bounded.broken(value, &model.system) {
-            return Err(BoundaryError::Limit {
-                place: "limits",
-                reason: format!("{broken}; no free parameter changes it"),
-            });
+            let reason = format!("{broken}; no free parameter changes it");
+            return Err(BoundaryError::refused("limits", reason));
         }
     }
     let costs = &control.objective.quantities;
@@ -323,10 +321,8 @@ pub(super) fn given_amounts(
     for (cost, _) in costs.iter().zip(measures).filter(|(_, m)| is_given(m)) {
         if let What::Amount { muscles, amount } = &cost.quantity.what {
             let words = amount.words(muscles, &model.system);
-            return Err(BoundaryError::Limit {
-                place: "objective",
-                reason: format!("no free parameter changes the {words}"),
-            });
+            let reason = format!("no free parameter changes the {words}");
+            return Err(BoundaryError::refused("objective", reason));
         }
     }
     Ok(())

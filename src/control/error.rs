@@ -1,7 +1,7 @@
 //! Errors of control problems that are not well posed.
 
-use crate::dynamics::{BeyondLaw, EquilibriumError};
-use crate::model::ModelError;
+use crate::dynamics::EquilibriumError;
+use crate::model::{ModelError, Parameter};
 use crate::stop::Stopped;
 use thiserror::Error;
 
@@ -19,82 +19,6 @@ pub enum BoundaryError {
         /// Reason.
         source: EquilibriumError,
     },
-    /// A given configuration is not at rest under its voltages.
-    #[error(
-        "{place}: the given joint coordinates do not fit the loops of the scene: {name} is violated by {value:.3e}"
-    )]
-    Inconsistent {
-        /// `start` or `goal`.
-        place: &'static str,
-        /// The worst constraint.
-        name: String,
-        /// Its value.
-        value: f64,
-    },
-    /// A state that is that of a goal only.
-    #[error(
-        "{place}: a motion starts at joint coordinates, at rest under voltages, or at the end of another motion; free and periodic states and places of markers are goals"
-    )]
-    NoStart {
-        /// `start`.
-        place: &'static str,
-    },
-    /// The rates of joints and bodies do not fit a closed loop.
-    #[error(
-        "{place}: the rates of joints and bodies open a closed loop, by {constraint}; leave out those that follow from the others, or name them all"
-    )]
-    OpenRates {
-        /// `start`.
-        place: &'static str,
-        /// The constraint that they violate most.
-        constraint: String,
-    },
-    /// A body cannot be given a velocity.
-    #[error("{place}: the motion of body \"{body}\" follows from its joints")]
-    Follows {
-        /// `start`.
-        place: &'static str,
-        /// The body.
-        body: String,
-    },
-    /// A start or goal contradicts a prescribed motion.
-    #[error("{place}: {reason}")]
-    Prescribed {
-        /// `start` or `goal`.
-        place: &'static str,
-        /// The joint, what is prescribed and what was found.
-        reason: String,
-    },
-    /// Another motion did not end in a state of this model.
-    #[error("{place}.end_of: {reason}")]
-    OtherEnd {
-        /// `start`.
-        place: &'static str,
-        /// Difference.
-        reason: String,
-    },
-    /// The inputs that hold a goal cannot be sought.
-    #[error("goal.hold: {reason}")]
-    Hold {
-        /// Reason.
-        reason: String,
-    },
-    /// The ends of a muscle meet in a given configuration.
-    #[error("{place}: the ends of muscle \"{muscle}\" meet there, where it has no energy")]
-    NoLength {
-        /// `start` or `goal`.
-        place: &'static str,
-        /// The muscle.
-        muscle: String,
-    },
-    /// A muscle or block is beyond the limit of its law in a given configuration.
-    #[error("{place}: {part}")]
-    BeyondLaw {
-        /// `start` or `goal`.
-        place: &'static str,
-        /// The muscle or block.
-        part: BeyondLaw,
-    },
     /// A parameter cannot be sought.
     #[error("free parameter \"{name}\": {reason}")]
     Parameter {
@@ -103,12 +27,12 @@ pub enum BoundaryError {
         /// Reason.
         reason: String,
     },
-    /// Known values of the start or the goal break a limit.
+    /// A part of the problem is not offered, or contradicts another one.
     #[error("{place}: {reason}")]
-    Limit {
-        /// `start` or `goal`, `limits` that contradict each other or that nothing can keep, or the `objective`.
+    Refused {
+        /// Path of the part in the problem.
         place: &'static str,
-        /// The limit, the value and the bound.
+        /// What was found, and what is expected.
         reason: String,
     },
     /// Start and goal cannot be moved in a program that stands.
@@ -144,6 +68,22 @@ pub enum BoundaryError {
         /// True if nodes of elements are among the coordinates.
         has_elements: bool,
     },
+}
+
+impl BoundaryError {
+    /// That a part of the problem is refused.
+    pub(super) fn refused(place: &'static str, reason: impl Into<String>) -> Self {
+        let reason = reason.into();
+        Self::Refused { place, reason }
+    }
+
+    /// That a free parameter is refused.
+    pub(super) fn parameter(parameter: &Parameter, reason: impl Into<String>) -> Self {
+        Self::Parameter {
+            name: parameter.name.clone(),
+            reason: reason.into(),
+        }
+    }
 }
 
 /// Largest number of goals listed.

@@ -24,10 +24,7 @@ const PROBES: [f64; 2] = [0.5, 2.0];
 pub(super) fn at_guess(system: &System, control: &Control) -> Result<System, BoundaryError> {
     let parameters = &control.parameters;
     check_parameters(system, parameters).map_err(|NotSought { parameter, reason }| {
-        BoundaryError::Parameter {
-            name: parameters[parameter].name.clone(),
-            reason,
-        }
+        BoundaryError::parameter(&parameters[parameter], reason)
     })?;
     let guesses: Vec<f64> = parameters.iter().map(|p| p.guess).collect();
     Ok(with_parameters(system, parameters, &guesses))
@@ -115,30 +112,23 @@ pub(super) fn check(
     let layout = model.action.layout();
     let scalars = model.variables.range(Role::Parameter);
     for (s, parameter) in scalars.zip(&control.parameters) {
+        let refused = |reason: &str| Err(BoundaryError::parameter(parameter, reason));
         let mut measures = model.action.intervals.measures.iter();
         let is_measured = measures.any(|measure| measure.scalars().contains(&s));
         if !is_measured && !layout.mixed.entries().any(|(_, read)| read == s) {
-            return Err(BoundaryError::Parameter {
-                name: parameter.name.clone(),
-                reason: "nothing that moves reads it".to_owned(),
-            });
+            return refused("nothing that moves reads it");
         }
         let mut constants = parameter.constants.iter();
         if model.coordinates == Coordinates::Redundant && constants.any(|c| c.constant.is_place()) {
-            return Err(BoundaryError::Parameter {
-                name: parameter.name.clone(),
-                reason: "a place of a body, joint or marker depends on it, which is offered in joint coordinates alone"
-                    .to_owned(),
-            });
+            return refused(
+                "a place of a body, joint or marker depends on it, which is offered in joint coordinates alone",
+            );
         }
         let mut quantities = model.analysis.quantities.iter();
         if quantities.any(|quantity| reads(quantity, parameter)) {
-            return Err(BoundaryError::Parameter {
-                name: parameter.name.clone(),
-                reason:
-                    "the quantity of a limit or of the objective depends on it, which is not offered"
-                        .to_owned(),
-            });
+            return refused(
+                "the quantity of a limit or of the objective depends on it, which is not offered",
+            );
         }
     }
     remembered_start(model, control)?;
@@ -156,10 +146,7 @@ pub(super) fn check(
                 *depends = true;
                 let reason = not_sought(model, boundary, place);
                 if let Some(reason) = reason.or_else(|| steps_from_rest(boundary, place)) {
-                    return Err(BoundaryError::Parameter {
-                        name: parameter.name.clone(),
-                        reason,
-                    });
+                    return Err(BoundaryError::parameter(parameter, reason));
                 }
             }
         }
@@ -183,13 +170,11 @@ fn remembered_start(model: &Model, control: &Control) -> Result<(), BoundaryErro
             _ => None,
         });
         if let Some(m) = stretched.find(remembers) {
-            return Err(BoundaryError::Parameter {
-                name: parameter.name.clone(),
-                reason: format!(
-                    "the state of the Maxwell branches of muscle \"{}\" at the start depends on it; give a start at rest (\"rest_at_voltages\")",
-                    muscles[m].name
-                ),
-            });
+            let reason = format!(
+                "the state of the Maxwell branches of muscle \"{}\" at the start depends on it; give a start at rest (\"rest_at_voltages\")",
+                muscles[m].name
+            );
+            return Err(BoundaryError::parameter(parameter, reason));
         }
     }
     Ok(())
@@ -213,10 +198,11 @@ pub(super) fn moving_start(
         Some(&first) if is_end && moves => Err(first),
         _ => momentum_slopes(model, &control.start, start),
     };
-    found.map_err(|index| BoundaryError::Parameter {
-        name: control.parameters[index].name.clone(),
-        reason: "a mass depends on it, and with it the momentum at the start, which is no straight line in it; give a start at rest"
-            .to_owned(),
+    found.map_err(|index| {
+        BoundaryError::parameter(
+            &control.parameters[index],
+            "a mass depends on it, and with it the momentum at the start, which is no straight line in it; give a start at rest",
+        )
     })
 }
 

@@ -20,14 +20,11 @@ use std::collections::BTreeMap;
 ///
 /// # Errors
 /// There is no equilibrium, or joint coordinates do not fit the loops of the scene.
-pub fn resolve_start(
-    model: &Model,
-    state: &BoundaryState,
-    place: &'static str,
-) -> Result<Start, BoundaryError> {
+pub fn resolve_start(model: &Model, state: &BoundaryState) -> Result<Start, BoundaryError> {
+    let place = "start";
     match state {
         BoundaryState::RestAtVoltages(voltages, _) => {
-            at_rest(model, rest_at(model, voltages, place, 0.0)?.z, place)
+            at_rest(model, rest_at(model, voltages, place, 0.0)?.z)
         }
         BoundaryState::JointAngles {
             angles,
@@ -35,36 +32,39 @@ pub fn resolve_start(
             velocities,
         } => {
             let value = |one: &Prescribed| one.motion.at(0.0);
-            let joints = prescribed::by_joint(model, angles, value, (place, "coordinate"))?;
+            let joints = prescribed::by_joint(model, angles, value, "coordinate")?;
             let z = model.coordinates_at(&joints);
-            check_constraints(model, &z, place)?;
+            check_constraints(model, &z)?;
             check_muscles(model, &z, place)?;
             let rate = |one: &Prescribed| one.motion.derivatives(0.0)[1];
-            let of_joints = prescribed::by_joint(model, named_rates, rate, (place, "rate"))?;
+            let of_joints = prescribed::by_joint(model, named_rates, rate, "rate")?;
             // In closed loops joints move with the rest.
             let of_joints = match model.has_loops() {
                 true => vec![0.0; of_joints.len()],
                 false => of_joints,
             };
             let rates = model.rates_at(&joints, &of_joints, velocities);
-            let rates = rates.map_err(|body| BoundaryError::Follows {
-                place,
-                body: model.system.bodies[body].name.clone(),
+            let rates = rates.map_err(|body| {
+                let name = &model.system.bodies[body].name;
+                let reason = format!("the motion of body \"{name}\" follows from its joints");
+                BoundaryError::refused(place, reason)
             })?;
             let rates = model.rates_of_all(&rates, &of_joints);
             let bodies: Vec<usize> = velocities.keys().copied().collect();
-            prescribed::in_loops(model, place, z, rates, named_rates.clone(), &bodies)
+            prescribed::in_loops(model, z, rates, named_rates.clone(), &bodies)
         }
         BoundaryState::EndOf(end) => {
-            let start = end
-                .start(model)
-                .map_err(|reason| BoundaryError::OtherEnd { place, reason })?;
+            let start = end.start(model);
+            let start = start.map_err(|reason| BoundaryError::refused("start.end_of", reason))?;
             check_muscles(model, &start.z, place)?;
-            prescribed::check_end(model, &start.z, place)?;
+            prescribed::check_end(model, &start.z)?;
             Ok(start)
         }
         BoundaryState::Markers { .. } | BoundaryState::Free | BoundaryState::Periodic => {
-            Err(BoundaryError::NoStart { place })
+            Err(BoundaryError::refused(
+                place,
+                "a motion starts at joint coordinates, at rest under voltages, or at the end of another motion; free and periodic states and places of markers are goals",
+            ))
         }
     }
 }
@@ -75,24 +75,23 @@ pub(super) fn check_muscles(
     z: &[f64],
     place: &'static str,
 ) -> Result<(), BoundaryError> {
-    if let Some(part) = part_beyond_law(model, z) {
-        return Err(BoundaryError::BeyondLaw { place, part });
-    }
-    match muscle_without_length(model, z) {
+    let beyond = part_beyond_law(model, z).map(|part| part.to_string());
+    let without_length = || {
+        let name = &model.system.muscles[muscle_without_length(model, z)?].name;
+        Some(format!(
+            "the ends of muscle \"{name}\" meet there, where it has no energy"
+        ))
+    };
+    match beyond.or_else(without_length) {
         None => Ok(()),
-        Some(muscle) => Err(BoundaryError::NoLength {
-            place,
-            muscle: model.system.muscles[muscle].name.clone(),
-        }),
+        Some(reason) => Err(BoundaryError::refused(place, reason)),
     }
 }
 
 /// Checks the constraints that the coordinates leave open.
-fn check_constraints(model: &Model, z: &[f64], place: &'static str) -> Result<(), BoundaryError> {
-    let mut instant = model.action.map.instant();
+fn check_constraints(model: &Model, z: &[f64]) -> Result<(), BoundaryError> {
+    let mut instant = model.action.map.placed(z);
     let mut scratch = model.action.scratch(Order::Gradient);
-    instant.z.copy_from_slice(z);
-    model.action.map.place(&mut instant);
     model
         .action
         .evaluate_instant(Order::Gradient, &mut instant, &[], &mut scratch);
@@ -101,11 +100,11 @@ fn check_constraints(model: &Model, z: &[f64], place: &'static str) -> Result<()
     let Some(worst) = worst else { return Ok(()) };
     let value = rows[worst].abs() / model.multiplier_time;
     if value > 1e-9 * model.length() {
-        return Err(BoundaryError::Inconsistent {
-            place,
-            name: model.variables.with(Role::Multiplier)[worst].name.clone(),
-            value,
-        });
+        let name = &model.variables.with(Role::Multiplier)[worst].name;
+        let reason = format!(
+            "the given joint coordinates do not fit the loops of the scene: {name} is violated by {value:.3e}"
+        );
+        return Err(BoundaryError::refused("start", reason));
     }
     Ok(())
 }
@@ -285,5 +284,5 @@ fn start_at(model: &Model, state: &BoundaryState, changed: &[(usize, f64)]) -> O
         .iter()
         .for_each(|&(index, value)| values[index] = value);
     let model = with_values(model, &values).ok()?;
-    resolve_start(&model, state, "start").ok()
+    resolve_start(&model, state).ok()
 }

@@ -102,8 +102,7 @@ pub(super) fn leave_out_constant(
         let value = measure.value(&Sample::of_instant(&instant.x, &[]));
         if let Some(reason) = bounded.broken(value, &model.system) {
             let reason = format!("{reason}; no joint changes it");
-            let place = "goal";
-            return Err(BoundaryError::Limit { place, reason });
+            return Err(BoundaryError::refused("goal", reason));
         }
         model.measured[index] = None;
     }

@@ -19,30 +19,25 @@ pub(super) fn check(model: &Model, control: &Control) -> Result<(), BoundaryErro
     if control.goal != BoundaryState::Periodic {
         return Ok(());
     }
-    let refused = |reason: String| {
-        let place = "goal";
-        Err(BoundaryError::Prescribed { place, reason })
-    };
+    let refused = |reason: &str| Err(BoundaryError::refused("goal", reason));
     if !control.objective.energies.is_empty() {
         return refused(
-            "energies of sources are no costs of a periodic motion; take \"effort\" or \"rate\""
-                .to_owned(),
+            "energies of sources are no costs of a periodic motion; take \"effort\" or \"rate\"",
         );
     }
     if control.intervals < 2 {
-        return refused("a periodic motion needs at least two intervals".to_owned());
+        return refused("a periodic motion needs at least two intervals");
     }
     // What is read in the middle of intervals alone may alternate from instant to instant in a ring of an even number of them.
     if model.memory().next().is_some() {
         return refused(
-            "periodic motions are those of muscles and blocks that do not creep and have no circuit"
-                .to_owned(),
+            "periodic motions are those of muscles and blocks that do not creep and have no circuit",
         );
     }
     for (source, named) in model.sources.iter().enumerate() {
         let function = control.function(source);
         if function.is_some_and(|function| !repeats(function, control.duration)) {
-            return refused(format!(
+            return refused(&format!(
                 "the given input of {} is a function of time that does not repeat after the duration of a periodic motion",
                 named.name
             ));
@@ -61,7 +56,7 @@ pub(super) fn check(model: &Model, control: &Control) -> Result<(), BoundaryErro
         let changes = pairs.map(|((a, b), per)| (a - b).abs() * per);
         if changes.fold(0.0, f64::max) > SAME * size {
             let name = &model.system.joints[one.joint].name;
-            return refused(format!(
+            return refused(&format!(
                 "joint \"{name}\" has a prescribed motion that does not come back after the duration of a periodic motion"
             ));
         }

@@ -27,12 +27,12 @@ pub(super) fn by_joint(
     model: &Model,
     named: &BTreeMap<usize, f64>,
     of: impl Fn(&Prescribed) -> f64,
-    (place, what): (&'static str, &str),
+    what: &str,
 ) -> Result<Vec<f64>, BoundaryError> {
     let mut values = model.of_prescribed_joints(of);
     for (&joint, &found) in named {
         match model.prescribed.iter().find(|one| one.joint == joint) {
-            Some(one) => check(model, one, [found, values[joint]], place, what)?,
+            Some(one) => check(model, one, [found, values[joint]], "start", what)?,
             None => values[joint] = found,
         }
     }
@@ -53,31 +53,27 @@ fn check(
         return Ok(());
     }
     let [found, value] = [found, value].map(|number| significant(number, 4));
-    Err(BoundaryError::Prescribed {
+    let name = &model.system.joints[one.joint].name;
+    Err(BoundaryError::refused(
         place,
-        reason: format!(
-            "the {what} of joint \"{}\" is prescribed, {value} {unit} there; found {found} {unit}",
-            model.system.joints[one.joint].name
+        format!(
+            "the {what} of joint \"{name}\" is prescribed, {value} {unit} there; found {found} {unit}"
         ),
-    })
+    ))
 }
 
 /// A start at coordinates of rest; nodes and prescribed joints may have velocities of their own.
 ///
 /// # Errors
 /// The rates of prescribed joints open a loop.
-pub(super) fn at_rest(
-    model: &Model,
-    z: Vec<f64>,
-    place: &'static str,
-) -> Result<Start, BoundaryError> {
+pub(super) fn at_rest(model: &Model, z: Vec<f64>) -> Result<Start, BoundaryError> {
     let rates = model.rates_at_rest(0.0, &model.action.map.placed(&z));
     let carried = rates.map(|rates| match model.has_loops() {
         true => model.node_rates().unwrap_or_else(|| vec![0.0; rates.len()]),
         false => rates,
     });
     match carried {
-        Some(rates) => in_loops(model, place, z, rates, BTreeMap::new(), &[]),
+        Some(rates) => in_loops(model, z, rates, BTreeMap::new(), &[]),
         None => Ok(Start::at_rest(model, z)),
     }
 }
@@ -89,7 +85,6 @@ pub(super) fn at_rest(
 /// The rates open a loop.
 pub(super) fn in_loops(
     model: &Model,
-    place: &'static str,
     z: Vec<f64>,
     rates: Vec<f64>,
     named: BTreeMap<usize, f64>,
@@ -101,20 +96,20 @@ pub(super) fn in_loops(
     joints.extend(prescribed.map(|one| (one.joint, one.motion.derivatives(0.0)[1])));
     let joints = joints.into_iter();
     let joints: Vec<(usize, f64)> = joints.filter(|(j, _)| moving.contains(j)).collect();
-    let rates = rates_in_loops(model, &z, rates, &joints, bodies)
-        .map_err(|constraint| BoundaryError::OpenRates { place, constraint })?;
+    let rates = rates_in_loops(model, &z, rates, &joints, bodies).map_err(|constraint| {
+        let reason = format!(
+            "the rates of joints and bodies open a closed loop, by {constraint}; leave out those that follow from the others, or name them all"
+        );
+        BoundaryError::refused("start", reason)
+    })?;
     Ok(Start::with_rates(model, z, &rates))
 }
 
 /// Checks that the end of another motion has the prescribed values of a start.
-pub(super) fn check_end(
-    model: &Model,
-    z: &[f64],
-    place: &'static str,
-) -> Result<(), BoundaryError> {
+pub(super) fn check_end(model: &Model, z: &[f64]) -> Result<(), BoundaryError> {
     let checked = |one: &Prescribed| {
         let values = [z[one.coordinate], one.motion.at(0.0)];
-        check(model, one, values, place, "coordinate")
+        check(model, one, values, "start", "coordinate")
     };
     model.prescribed.iter().try_for_each(checked)
 }
@@ -127,10 +122,8 @@ pub(super) fn check_end_of_motions(
 ) -> Result<(), BoundaryError> {
     let refused = |one: &Prescribed, reason: &str| {
         let name = &model.system.joints[one.joint].name;
-        Err(BoundaryError::Prescribed {
-            place: "goal",
-            reason: format!("joint \"{name}\" has a prescribed motion, {reason}"),
-        })
+        let reason = format!("joint \"{name}\" has a prescribed motion, {reason}");
+        Err(BoundaryError::refused("goal", reason))
     };
     let duration = control.duration;
     for one in &model.prescribed {
@@ -188,12 +181,9 @@ pub(super) fn check_given_rates(
     if !matches!(control.duration, Duration::Given(_)) {
         return Ok(());
     }
-    let broken = |limit| broken(limit, (system, control), rest);
+    let broken = |limit| broken(limit, system, control, rest);
     match control.limits.iter().find_map(broken) {
-        Some(reason) => Err(BoundaryError::Limit {
-            place: "limits",
-            reason,
-        }),
+        Some(reason) => Err(BoundaryError::refused("limits", reason)),
         None => Ok(()),
     }
 }
@@ -201,7 +191,8 @@ pub(super) fn check_given_rates(
 /// The message of a limit that a given voltage breaks.
 fn broken(
     limit: &Limit,
-    (system, control): (&System, &Control),
+    system: &System,
+    control: &Control,
     rest: &[Option<Vec<f64>>; 2],
 ) -> Option<String> {
     let What::Voltage(source) = limit.what else {

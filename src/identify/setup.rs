@@ -146,7 +146,7 @@ impl Setup<'_> {
 
     /// The start that the recording gives, and the changes of its momenta with sought masses.
     pub(super) fn given_start(&self) -> Result<(Start, Vec<MomentumSlopes>), IdentifyError> {
-        let found = resolve_start(&self.model, &self.start, "start");
+        let found = resolve_start(&self.model, &self.start);
         let mut start = found.map_err(|error| self.recording.wrong(error))?;
         let slopes = momentum_slopes(&self.model, &self.start, &mut start);
         let slopes = slopes.map_err(|index| {

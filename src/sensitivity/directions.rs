@@ -231,7 +231,7 @@ impl<'a> Directions<'a> {
             rates: BTreeMap::from([(joint, 1.0)]),
             velocities: BTreeMap::new(),
         };
-        let start = resolve_start(self.model(), &unit, "start");
+        let start = resolve_start(self.model(), &unit);
         let mut start = start.map_err(NoSensitivity::refused)?;
         let slopes = momentum_slopes(self.model(), &unit, &mut start);
         slopes.map_err(|_| NoSensitivity::refused("momenta are no straight line in a mass"))?;

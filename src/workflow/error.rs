@@ -69,8 +69,7 @@ impl WorkflowError {
                 ..
             }
             | BoundaryError::Stopped(stopped) => return (*stopped).into(),
-            BoundaryError::Limit { place, reason }
-            | BoundaryError::Prescribed { place, reason } => (*place, reason.clone()),
+            BoundaryError::Refused { place, reason } => (*place, reason.clone()),
             BoundaryError::NoEquilibrium { place, source } => {
                 let reason = source.to_string();
                 // What nothing holds is wrong input; loads without an equilibrium are not.
@@ -97,18 +96,6 @@ impl WorkflowError {
                 };
                 (*place, reason + hint)
             }
-            BoundaryError::Inconsistent { place, .. }
-            | BoundaryError::NoLength { place, .. }
-            | BoundaryError::BeyondLaw { place, .. }
-            | BoundaryError::OpenRates { place, .. }
-            | BoundaryError::NoStart { place }
-            | BoundaryError::Follows { place, .. } => {
-                let text = error.to_string();
-                let reason = text.strip_prefix(&format!("{place}: ")).unwrap_or(&text);
-                (*place, reason.to_owned())
-            }
-            BoundaryError::OtherEnd { reason, .. } => ("start.end_of", reason.clone()),
-            BoundaryError::Hold { reason } => ("goal.hold", reason.clone()),
             BoundaryError::Parameter { name, reason } => {
                 ("free", format!("parameter \"{name}\": {reason}"))
             }

@@ -233,7 +233,7 @@ fn begin(
     let mut begun = match begun {
         Some(begun) => begun,
         None => {
-            let start = resolve_start(model, &task.start, "start").map_err(wrong)?;
+            let start = resolve_start(model, &task.start).map_err(wrong)?;
             let mut begun = DiscreteTrajectory::at(&start);
             if let BoundaryState::EndOf(end) = &task.start
                 && end.method.of == of

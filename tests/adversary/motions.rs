@@ -54,7 +54,7 @@ fn task(signals: &[Signal], duration: f64, tolerance: Option<f64>) -> Simulation
 
 /// The motion by Galerkin's method of degree 3 with each step between the times in `parts` parts.
 fn exact(model: &Model, signals: &[Signal], times: &[f64], parts: usize) -> DiscreteTrajectory {
-    let start = resolve_start(model, &task(signals, 1.0, None).start, "start").unwrap();
+    let start = resolve_start(model, &task(signals, 1.0, None).start).unwrap();
     let split = |ends: &[f64]| {
         let (from, step) = (ends[0], (ends[1] - ends[0]) / parts as f64);
         (1..=parts)

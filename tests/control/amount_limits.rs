@@ -194,7 +194,7 @@ fn a_given_volume_keeps_its_limit_without_a_row_or_is_refused() {
     );
     assert!(!kept.rows.iter().any(|row| matches!(row, Row::Limit { .. })));
     let refused = resolve(&with(volume(1.0, 9.0 * PER_WIDTH)));
-    let Err(BoundaryError::Limit { place, reason }) = refused else {
+    let Err(BoundaryError::Refused { place, reason }) = refused else {
         panic!("{refused:?}");
     };
     assert_eq!(place, "limits");
@@ -211,7 +211,7 @@ fn a_given_volume_keeps_its_limit_without_a_row_or_is_refused() {
         function: CostFunction::Itself,
         during: During::End,
     });
-    let Err(BoundaryError::Limit { place, reason }) = resolve(&paid) else {
+    let Err(BoundaryError::Refused { place, reason }) = resolve(&paid) else {
         panic!("a cost of what is given");
     };
     assert_eq!(place, "objective");

@@ -207,7 +207,7 @@ fn forces_and_charges_are_those_of_tables() {
     let intervals = 1600;
     let model = Model::new(system.clone(), None, 0.05, &[]).unwrap();
     let of = &task.recordings[0];
-    let start = proboscis::control::resolve_start(&model, &of.start, "start").unwrap();
+    let start = proboscis::control::resolve_start(&model, &of.start).unwrap();
     let scalars = |a: f64, b: f64| model.scalars(&of.voltages.at(0.5 * (a + b)));
     let (discrete, failure) = simulate(&model, &start, 0.05, intervals, scalars, |_| {
         std::ops::ControlFlow::Continue(())

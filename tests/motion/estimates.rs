@@ -36,7 +36,7 @@ fn exact(model: &Model, task: &Simulation, times: &[f64]) -> DiscreteTrajectory 
         integrator: Integrator::Galerkin { degree: 3 },
         ..Solving::default()
     };
-    let start = resolve_start(model, &task.start, "start").unwrap();
+    let start = resolve_start(model, &task.start).unwrap();
     let (begun, lengths) = (DiscreteTrajectory::at(&start), Lengths::Between(&all));
     let go = |_: &DiscreteTrajectory| ControlFlow::Continue(());
     let (motion, failure) = go_on(solving, model, begun, lengths, Inputs(model, task), go);

@@ -58,7 +58,7 @@ fn the_rate_of_one_joint_sets_the_whole_loop_in_motion() {
         let expected = [crank, coupler - crank, rocker - coupler, rocker];
         for named in [&[0][..], &[3], &[1], &[0, 3], &[0, 1, 2, 3]] {
             let rates: Vec<_> = named.iter().map(|&j| (j, expected[j])).collect();
-            let start = resolve_start(&model, &start(&rates), "start").unwrap();
+            let start = resolve_start(&model, &start(&rates)).unwrap();
             let found = start.rates.as_ref().unwrap();
             let mut instant = placed(&model, &start.z);
             instant.l[..found.len()].copy_from_slice(found);
@@ -78,7 +78,7 @@ fn the_rate_of_one_joint_sets_the_whole_loop_in_motion() {
             assert!(drift < 1e-4 * energy, "{drift} of {energy}");
         }
         let wrong = start(&[(0, crank), (3, 1.01 * rocker)]);
-        let refused = resolve_start(&model, &wrong, "start").unwrap_err();
+        let refused = resolve_start(&model, &wrong).unwrap_err();
         assert!(refused.to_string().contains("closed loop"), "{refused}");
     }
 }
@@ -105,7 +105,7 @@ fn a_named_velocity_stays_beside_a_loop() {
             rates: rate.map(|rate| (0, rate)).into_iter().collect(),
             velocities: BTreeMap::from([(body, velocity)]),
         };
-        let start = resolve_start(&model, &state, "start").unwrap();
+        let start = resolve_start(&model, &state).unwrap();
         let rates = start.rates.unwrap();
         let own = &rates[12 * body..12 * body + 3];
         let expected: Vec<f64> = velocity[0].iter().copied().collect();
@@ -142,7 +142,7 @@ fn a_prescribed_crank_starts_its_slider() {
     std::fs::write(&path, problem.to_string()).unwrap();
     let loaded = read_problem(Path::new(&path), &[]).unwrap();
     let model = Model::new(loaded.system, None, 1.0, &[]).unwrap();
-    let start = resolve_start(&model, &start(&[]), "start").unwrap();
+    let start = resolve_start(&model, &start(&[])).unwrap();
     let mut instant = placed(&model, &start.z);
     let found = start.rates.unwrap();
     instant.l[..found.len()].copy_from_slice(&found);
@@ -304,7 +304,7 @@ fn open_rates_have_the_least_kinetic_energy_in_every_order_of_joints() {
                 .iter()
                 .map(|&(j, rate)| (place(j), sign(j) * rate))
                 .collect();
-            let start = resolve_start(&model, &start(&named), "start").unwrap();
+            let start = resolve_start(&model, &start(&named)).unwrap();
             let mut instant = placed(&model, &start.z);
             let found = start.rates.unwrap();
             instant.l[..found.len()].copy_from_slice(&found);

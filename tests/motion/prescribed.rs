@@ -84,7 +84,7 @@ fn moved(
         rates: BTreeMap::new(),
         velocities: BTreeMap::new(),
     };
-    let start = resolve_start(model, &start, "start").unwrap();
+    let start = resolve_start(model, &start).unwrap();
     parts::moved(integrator, model, &start, h, steps, &[])
 }
 

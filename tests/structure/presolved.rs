@@ -41,7 +41,7 @@ pub(crate) fn under(voltages: Vec<f64>, coordinates: Coordinates) -> Simulation 
 pub(crate) fn moved(system: &System, task: &Simulation) -> (Model, DiscreteTrajectory) {
     let analysis = task.analysis(system, task.step);
     let model = Model::for_analysis(system.clone(), analysis).unwrap();
-    let start = resolve_start(&model, &task.start, "start").unwrap();
+    let start = resolve_start(&model, &task.start).unwrap();
     let Voltages::Constant(row) = &task.voltages else {
         panic!("constant voltages")
     };
