@@ -133,7 +133,7 @@ pub fn robot(address: &str, problem: &[String]) -> Result<BTreeMap<String, [f64;
         || -> Result<String, Mistake> { Ok(answers.next().ok_or("the controller has gone")??) };
     let names = next()?;
     let names = names.split('\t').map(|name| Robot::reading(&model, name));
-    let start = resolve_start(&model, &task.start, "start")?;
+    let start = resolve_start(&model, &task.start)?;
     let stepper = Stepper::new(&model, &start.z, &start.momentum, task.solving);
     let mut robot = Robot {
         model: &model,
