@@ -12,7 +12,7 @@ use std::process::Command;
 const INSTALL: &str = "proboscis needs Ipopt with its C header: \
     install coinor-libipopt-dev (Debian, Ubuntu), coin-or-Ipopt-devel (Fedora) or ipopt (Homebrew), \
     and see that `pkg-config --cflags --libs ipopt` answers";
-/// Versions of Ipopt that brought a C interface; `make bindings` makes `src/ipopt/bindings*` from their headers.
+/// Versions of Ipopt that brought a C interface; `make bindings` makes `src/ipopt/bindings_*` from their headers.
 const INTERFACES: [&str; 2] = ["3_11", "3_14"];
 
 /// Message when MUMPS or its header is missing.

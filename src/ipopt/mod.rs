@@ -4,13 +4,17 @@
 //! more, one runs at a time in a process and a second call waits; an observer or an [`Nlp`] must not call [`solve`] itself then.
 
 #[allow(
+    dead_code,
     missing_docs,
     non_camel_case_types,
     non_snake_case,
+    non_upper_case_globals,
     unreachable_pub,
     unsafe_code,
-    reason = "made by `make bindings`; build.rs finds out whose truth values the header at hand has"
+    reason = "made by `make bindings`; build.rs chooses those that agree with the header at hand"
 )]
+#[cfg_attr(ipopt_3_11, path = "bindings_3_11.rs")]
+#[cfg_attr(ipopt_3_14, path = "bindings_3_14.rs")]
 mod bindings;
 mod evaluation;
 mod ffi;

@@ -84,7 +84,8 @@ fn words_stay_in_their_place() {
                 .any(|word| word == "unsafe")
             {
                 let bindings = [
-                    "ipopt/bindings.rs",
+                    "ipopt/bindings_3_11.rs",
+                    "ipopt/bindings_3_14.rs",
                     "ipopt/ffi.rs",
                     "ipopt/ma57_adapter.rs",
                     "ipopt/loaded.rs",
