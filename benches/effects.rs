@@ -56,7 +56,7 @@ impl Variant {
             rates: BTreeMap::new(),
             velocities: Default::default(),
         };
-        let start = resolve_start(&model, &start, "start").expect("the reference configuration");
+        let start = resolve_start(&model, &start).expect("the reference configuration");
         Self {
             name: name.to_owned(),
             scalars: model.scalars(voltages),
