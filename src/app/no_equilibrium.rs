@@ -100,19 +100,7 @@ pub(super) fn no_equilibrium(request: &CommandInput, task: &Task) -> CommandErro
 
 /// The refusal of a problem that asks for something else, with the word of the command that finds it.
 fn asks_for(request: &CommandInput, task: &Task, [asks, word, instead]: [&str; 3]) -> CommandError {
-    let found = command(request, word);
+    let found = quoting::command(request.words(word));
     let reason = format!("asks for {asks}, found by `{found}`{instead}");
     CommandError::problem(&request.input, key(task), reason)
-}
-
-/// A command on the same problem with the same overrides and folder.
-fn command(request: &CommandInput, word: &str) -> String {
-    let mut words = vec!["proboscis".to_owned(), word.to_owned()];
-    words.push(request.input.display().to_string());
-    let set = request.set.iter();
-    words.extend(set.flat_map(|set| ["--set".to_owned(), set.clone()]));
-    if let Some(folder) = &request.output {
-        words.extend(["-o".to_owned(), folder.display().to_string()]);
-    }
-    quoting::command(words)
 }

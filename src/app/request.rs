@@ -76,6 +76,18 @@ impl CommandInput {
         })
     }
 
+    /// Words of a command on the same problem with the same overrides and folder.
+    pub(super) fn words(&self, command: &str) -> Vec<String> {
+        let mut words = ["proboscis", command].map(str::to_owned).to_vec();
+        words.push(self.input.display().to_string());
+        let set = self.set.iter();
+        words.extend(set.flat_map(|set| ["--set".to_owned(), set.clone()]));
+        if let Some(folder) = &self.output {
+            words.extend(["-o".to_owned(), folder.display().to_string()]);
+        }
+        words
+    }
+
     /// Returns the origin of results; Ipopt is named where it has a part.
     pub fn origin(&self, with_ipopt: bool) -> Origin {
         Origin::new(&self.command, &self.input, with_ipopt)

@@ -183,17 +183,7 @@ pub(in crate::app) fn command(request: &CommandInput, task: &Task) -> Option<Str
     if is_standard_input(&request.input) {
         return None;
     }
-    let folder = request.folder().display().to_string();
-    let mut words = vec![command.to_owned(), request.input.display().to_string()];
-    words.extend(
-        request
-            .set
-            .iter()
-            .flat_map(|set| ["--set".to_owned(), set.clone()]),
-    );
-    if request.output.is_some() {
-        words.extend(["-o".to_owned(), folder.clone()]);
-    }
-    words.extend(["--from".to_owned(), folder]);
-    Some(format!("to go on: proboscis {}", quoting::command(words)))
+    let mut words = request.words(command);
+    words.extend(["--from".to_owned(), request.folder().display().to_string()]);
+    Some(format!("to go on: {}", quoting::command(words)))
 }
