@@ -71,8 +71,8 @@ fn write(
     texts.try_for_each(|(name, text)| files.add(name, text.as_bytes()))
 }
 
-/// Makes a file where there is something to show: its name and its text.
-type Maker<'a> = &'a (dyn Fn() -> Option<(&'static str, String)> + Sync);
+/// Makes the text of a file where there is something to show.
+type Maker<'a> = &'a (dyn Fn() -> Option<String> + Sync);
 
 /// Names and texts of all files but the page, several at once.
 fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
@@ -90,62 +90,47 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
     let coloured = &*solids::coloured(system, trajectory, observations);
     let mut motions: Vec<_> = run.comparison.into_iter().collect();
     motions.push((run.name, trajectory));
-
-    let before: [Maker<'_>; 5] = [
-        &|| {
-            let csv = table::trajectory_csv(run.tabulated, origin);
-            Some(("trajectory.csv", csv))
-        },
-        &|| {
-            let csv = table::controls_csv(trajectory, system, origin);
-            Some(("controls.csv", csv))
-        },
-        &|| {
-            let svg = pose::svg(system, coloured, skins, &run.shown(), origin);
-            Some(("configuration.svg", svg))
-        },
-        &|| {
-            let is_wanted = run.figures.gltf;
-            let animated = is_wanted.then(|| gltf::text(system, coloured, skins, origin))?;
-            Some(("motion.gltf", animated?))
-        },
-        &|| {
-            let stills = snapshots::svg(system, coloured, skins, view, origin)?;
-            Some(("snapshots.svg", stills))
-        },
-    ];
-    let inputs =
-        InputKind::ALL.map(|kind| move || curves::input_svg(system, trajectory, kind, origin));
-    let figure = |name, plot: Option<LinePlot>| Some((name, plot?.svg(origin)));
     let times = &trajectory.times;
-    let behind: [Maker<'_>; 6] = [
-        &|| {
-            let is_marked = !system.markers.is_empty();
-            let svg = || tip_path::svg(system, &motions, tracked, waypoints, view, origin);
-            is_marked.then(|| ("tip_path.svg", svg()))
-        },
-        &|| figure("joint_angles.svg", curves::joint_plot(system, trajectory)),
-        &|| {
-            let plot = curves::charge_plot(system, trajectory, observations);
-            figure("charge.svg", plot.filter(|_| !skins.list.is_empty()))
-        },
-        &|| figure("energy.svg", curves::energy_plot(trajectory, observations)),
-        &|| {
-            Some((
-                "tracking.csv",
-                curves::tracking_csv(times, tracked, origin)?,
-            ))
-        },
-        &|| figure("tracking.svg", curves::deviation_plot(times, tracked)),
+    let drawn = |plot: Option<LinePlot>| Some(plot?.svg(origin));
+    let trajectory_csv = || Some(table::trajectory_csv(run.tabulated, origin));
+    let controls_csv = || Some(table::controls_csv(trajectory, system, origin));
+    let configuration = || Some(pose::svg(system, coloured, skins, &run.shown(), origin));
+    let animation = || gltf::text(system, coloured, skins, origin);
+    let animation = || run.figures.gltf.then(animation).flatten();
+    let stills = || snapshots::svg(system, coloured, skins, view, origin);
+    let inputs = InputKind::ALL.map(|kind| {
+        let svg = move || Some(curves::input_svg(system, trajectory, kind, origin)?.1);
+        (curves::input_names(kind).0, svg)
+    });
+    let paths = || tip_path::svg(system, &motions, tracked, waypoints, view, origin);
+    let paths = || (!system.markers.is_empty()).then(paths);
+    let joints = || drawn(curves::joint_plot(system, trajectory));
+    let charges = || curves::charge_plot(system, trajectory, observations);
+    let charges = || drawn(charges().filter(|_| !skins.list.is_empty()));
+    let energies = || drawn(curves::energy_plot(trajectory, observations));
+    let tracking_csv = || curves::tracking_csv(times, tracked, origin);
+    let tracking = || drawn(curves::deviation_plot(times, tracked));
+    let before: [(&'static str, Maker<'_>); 5] = [
+        ("trajectory.csv", &trajectory_csv),
+        ("controls.csv", &controls_csv),
+        ("configuration.svg", &configuration),
+        ("motion.gltf", &animation),
+        ("snapshots.svg", &stills),
     ];
-    let inputs = inputs.iter().map(|make| make as Maker<'_>);
+    let behind: [(&'static str, Maker<'_>); 6] = [
+        ("tip_path.svg", &paths),
+        ("joint_angles.svg", &joints),
+        ("charge.svg", &charges),
+        ("energy.svg", &energies),
+        ("tracking.csv", &tracking_csv),
+        ("tracking.svg", &tracking),
+    ];
+    let inputs = inputs.iter().map(|(name, make)| (*name, make as Maker<'_>));
     let makers: Vec<_> = before.into_iter().chain(inputs).chain(behind).collect();
+    let made = |(name, make): &(&'static str, Maker<'_>)| Some((*name, make()?));
     match has_pool() {
-        true => {
-            let each = makers.par_iter().with_max_len(1);
-            each.filter_map(|make| make()).collect()
-        }
-        false => makers.iter().filter_map(|make| make()).collect(),
+        true => makers.par_iter().with_max_len(1).filter_map(made).collect(),
+        false => makers.iter().filter_map(made).collect(),
     }
 }
 
