@@ -9,7 +9,7 @@ use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted, counted};
 use crate::app::solve::{Solved, add_notes};
 use crate::app::solve_summary::{describe, gap, outcome_word, parameter, parameter_note};
-use crate::app::summary::{Summary, Versions};
+use crate::app::summary::{Summary, versions};
 use crate::control::{Motions, PEAK_VOLTAGE};
 use crate::files::{Entries, Loaded};
 use crate::math::significant;
@@ -165,7 +165,7 @@ impl Together<'_> {
             .with_some("accuracy", accuracy.as_ref())
             .with("motions", motions)
             .with("seconds", Entries::default().with("total", seconds))
-            .with("versions", Versions::default())
+            .with("versions", versions())
     }
 
     /// A motion in the summary of all.

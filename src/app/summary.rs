@@ -87,26 +87,15 @@ pub(super) struct Summary {
     pub(super) seconds: Seconds,
     #[serde(flatten)]
     pub(super) plan: Plan,
-    pub(super) versions: Versions,
+    pub(super) versions: Entries,
 }
 
 /// Versions that the result depends on: those of this program.
-#[derive(Debug, Serialize)]
-pub(super) struct Versions {
-    program: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    commit: Option<&'static str>,
-    ipopt: &'static str,
-}
-
-impl Default for Versions {
-    fn default() -> Self {
-        Self {
-            program: env!("CARGO_PKG_VERSION"),
-            commit: option_env!("PROBOSCIS_COMMIT"),
-            ipopt: ipopt::VERSION,
-        }
-    }
+pub(super) fn versions() -> Entries {
+    Entries::default()
+        .with("program", env!("CARGO_PKG_VERSION"))
+        .with_some("commit", option_env!("PROBOSCIS_COMMIT"))
+        .with("ipopt", ipopt::VERSION)
 }
 
 /// The summary that a command has written.
@@ -130,6 +119,7 @@ impl Summary {
             input: request.input.display().to_string(),
             status: status.to_owned(),
             coordinates: coordinates.into(),
+            versions: versions(),
             ..Self::default()
         }
     }

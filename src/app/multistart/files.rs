@@ -1,35 +1,19 @@
 //! The files of the best start, and the table of all.
 
 use super::ended::{Ended, best, folder_of};
-use crate::app::batch::{Batch, RunIn};
+use crate::app::batch::Batch;
 use crate::app::error::CommandError;
 use crate::app::kept::overwrite_check::make_folder;
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::files::{lay_out, printable};
+use crate::files::{Entries, printable};
 use crate::math::significant;
 use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
 use crate::report::table::{aligned, cells_csv};
 use crate::stop;
-use serde::Serialize;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
-
-/// The section `starts` of `summary.json`.
-#[derive(Debug, Serialize)]
-pub(super) struct Section<'a> {
-    pub(super) command: &'a str,
-    pub(super) run_in: RunIn,
-    pub(super) count: usize,
-    pub(super) solved: usize,
-    pub(super) distinct_optima: usize,
-    /// The start whose files these are.
-    pub(super) best: Option<usize>,
-    /// Wall time of all of them in s.
-    pub(super) seconds: f64,
-    pub(super) each: &'a [Ended],
-}
 
 /// Writes the files of the best start and the table of all, and returns a message.
 pub(super) fn write(
@@ -39,7 +23,6 @@ pub(super) fn write(
     distinct: usize,
 ) -> Result<CommandOutput, CommandError> {
     let folder = &*request.folder();
-    let run_in = batch.run_in;
     let origin = request.origin(true);
     let csv = cells_csv(&cells(ended), &origin);
     atomic::write(&folder.join("starts.csv"), csv.as_bytes())?;
@@ -48,16 +31,17 @@ pub(super) fn write(
     let best = first.or_else(|| best(ended).map(|i| &ended[i]));
     let solved = ended.iter().filter(|one| one.is_solved).count();
     let seconds = batch.began.elapsed().as_secs_f64();
-    let section = Section {
-        command: &request.command,
-        run_in,
-        count: ended.len(),
-        solved,
-        distinct_optima: distinct,
-        best: best.map(|one| one.start),
-        seconds,
-        each: ended,
-    };
+    let section = Entries::default()
+        .with("command", &request.command)
+        .with("run_in", batch.run_in)
+        .with("count", ended.len())
+        .with("solved", solved)
+        .with("distinct_optima", distinct)
+        // The start whose files these are.
+        .with("best", best.map(|one| one.start))
+        // Wall time of all of them.
+        .with("seconds", seconds)
+        .with("each", ended);
     if let Some(best) = best {
         copy(&folder_of(folder, best.start), folder, &section)?;
     }
@@ -167,7 +151,7 @@ fn cells(ended: &[Ended]) -> Vec<Vec<String>> {
 }
 
 /// Copies the files of a start, its summary last and with the table of all.
-pub(super) fn copy(from: &Path, to: &Path, section: &Section<'_>) -> Result<(), WriteError> {
+pub(super) fn copy(from: &Path, to: &Path, section: &Entries) -> Result<(), WriteError> {
     let mut files = FileSet::in_folder(to);
     copy_folder(from, "", to, &mut files)?;
     let path = from.join("summary.json");
@@ -204,9 +188,8 @@ fn copy_folder(
 }
 
 /// A summary with the section of the starts at its end.
-pub(super) fn with_section(summary: &str, section: &Section<'_>) -> String {
-    let compact = serde_json::to_string(section).expect("numbers and words are JSON");
-    let laid_out = lay_out(&compact);
+pub(super) fn with_section(summary: &str, section: &Entries) -> String {
+    let laid_out = section.laid_out();
     let indented = laid_out.trim_end().replace('\n', "\n  ");
     let open = summary.trim_end().trim_end_matches('}').trim_end();
     let comma = if open.ends_with('{') { "" } else { "," };
