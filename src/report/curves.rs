@@ -9,14 +9,17 @@ use crate::report::style;
 use crate::report::table::csv;
 use crate::workflow::Tracked;
 
-/// Steps (time in s; kV, N or N m) of one source: each value from the start of its interval to the end.
-fn steps(trajectory: &Trajectory, source: usize, kind: InputKind) -> Vec<[f64; 2]> {
-    let (_, unit) = kind.counted();
-    let ends = trajectory.times.windows(2);
-    ends.zip(&trajectory.voltages)
-        .flat_map(|(ends, row)| [[ends[0], row[source]], [ends[1], row[source]]])
-        .map(|[time, value]| [time / 1e3, value / unit])
-        .collect()
+/// Steps over time in s: each value, of an interval and its inputs, from the start of the interval to the end.
+pub(super) fn steps(
+    trajectory: &Trajectory,
+    value: impl Fn(usize, &[f64]) -> f64,
+) -> Vec<[f64; 2]> {
+    let intervals = trajectory.times.windows(2).zip(&trajectory.voltages);
+    let steps = intervals.enumerate().flat_map(|(k, (ends, row))| {
+        let value = value(k, row);
+        [ends[0], ends[1]].map(|time| [time / 1e3, value])
+    });
+    steps.collect()
 }
 
 /// The curves of all sources of a kind, each with its number: of voltages agonists solid, antagonists dashed.
@@ -25,12 +28,13 @@ pub(super) fn inputs(
     trajectory: &Trajectory,
     kind: InputKind,
 ) -> Vec<(usize, Series)> {
+    let (_, unit) = kind.counted();
     let sources = system.sources().into_iter().enumerate();
     // A muscle whose charge is given takes no voltage.
     let curve = sources.filter(|(i, source)| source.kind == kind && !system.is_charged(*i));
     let curve = curve.map(|(i, source)| {
         let (colour, dash) = style::muscle(i);
-        let steps = steps(trajectory, i, kind);
+        let steps = steps(trajectory, |_, row| row[i] / unit);
         (i, Series::curve(&source.name, steps, colour).dashed(dash))
     });
     curve.collect()

@@ -5,6 +5,7 @@ use crate::model::System;
 use crate::model::system::InputKind;
 use crate::report::axes::{Axis, Extent};
 use crate::report::canvas::{self, Align, Canvas, Stroke, rectangle, text_width};
+use crate::report::curves;
 use crate::report::lines::{LinePlot, Series};
 use crate::report::origin::Origin;
 use crate::report::style::{self, Dash};
@@ -196,16 +197,8 @@ pub fn voltages(
     let sources = system.sources().into_iter().enumerate();
     for (i, source) in sources.filter(|(_, source)| source.takes_voltage) {
         let curve = |sign: f64| {
-            let ends = trajectory
-                .times
-                .windows(2)
-                .zip(&trajectory.voltages)
-                .enumerate();
-            let steps = ends.flat_map(|(k, (ends, row))| {
-                let value = (row[i] + sign * change(k, i)) / size;
-                [[ends[0] / 1e3, value], [ends[1] / 1e3, value]]
-            });
-            steps.collect::<Vec<_>>()
+            let value = |k: usize, row: &[f64]| (row[i] + sign * change(k, i)) / size;
+            curves::steps(trajectory, value)
         };
         let colour = style::hue(i);
         series.push(Series::curve(&source.name, curve(0.0), colour));
@@ -217,14 +210,6 @@ pub fn voltages(
         }
     }
     let has_any = list.iter().any(|one| one.varied.tolerance.is_some()) && !series.is_empty();
-    has_any.then(|| {
-        LinePlot::new(
-            Axis::linear("time [s]", Extent::Tight),
-            Axis::linear(
-                format!("{} [{unit}], ± all tolerances", kind.name()),
-                Extent::Padded,
-            ),
-            series,
-        )
-    })
+    let label = format!("{} [{unit}], ± all tolerances", kind.name());
+    has_any.then(|| LinePlot::over_time(label, series))
 }
