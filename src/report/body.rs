@@ -3,7 +3,8 @@
 use crate::kinematics::Pose;
 use crate::mesh::triangulated::{Surface, circle};
 use crate::model::system::Shape;
-use crate::report::canvas::{Canvas, CanvasPoint, Stroke};
+use crate::report::canvas::{Canvas, CanvasPoint, Stroke, length};
+use crate::report::skins::edges;
 use crate::report::solids::Prism;
 use crate::report::style::{self, Colour};
 use crate::report::view::{View, hull};
@@ -207,21 +208,18 @@ impl Silhouette {
             .map(|normal| normal.try_normalize(0.0).unwrap_or_default())
             .collect();
         let is_front = |triangle: usize| normals[triangle].dot(&toward) > 0.0;
-        // Triangles at each edge.
-        let mut sides: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
         let mut rim: BTreeMap<[usize; 2], i32> = BTreeMap::new();
         for (triangle, vertices) in surface.triangles.iter().enumerate() {
             for i in 0..3 {
                 let (from, to) = (vertices[i], vertices[(i + 1) % 3]);
                 let edge = [from.min(to), from.max(to)];
-                sides.entry(edge).or_default().push(triangle);
                 if is_front(triangle) {
                     *rim.entry(edge).or_default() += if from < to { 1 } else { -1 };
                 }
             }
         }
         let (mut behind, mut before) = (Vec::new(), Vec::new());
-        for (edge, triangles) in &sides {
+        for (edge, triangles) in &edges(&surface.triangles) {
             let ends = edge.map(|vertex| places[vertex]);
             let is_sharp = match triangles[..] {
                 [a, b] => normals[a].dot(&normals[b]) < SHARP,
@@ -287,8 +285,4 @@ fn loops(rim: &BTreeMap<[usize; 2], i32>) -> Vec<Vec<usize>> {
         paths.push(path);
     }
     paths
-}
-
-fn length([a, b]: [CanvasPoint; 2]) -> f64 {
-    (b[0] - a[0]).hypot(b[1] - a[1])
 }

@@ -199,6 +199,11 @@ impl Canvas<'_> {
     }
 }
 
+/// Distance of two places in pt.
+pub(super) fn length([a, b]: [CanvasPoint; 2]) -> f64 {
+    (b[0] - a[0]).hypot(b[1] - a[1])
+}
+
 /// Corners of a rectangle between two opposite ones.
 pub fn rectangle(from: CanvasPoint, to: CanvasPoint) -> [CanvasPoint; 4] {
     [from, [to[0], from[1]], to, [from[0], to[1]]]

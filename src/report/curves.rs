@@ -74,53 +74,41 @@ pub fn input_svg(
 }
 
 /// A plot over time in s; none without curves.
-fn plot(label: impl Into<String>, curves: Vec<Series>) -> Option<LinePlot> {
+pub(super) fn plot(label: impl Into<String>, curves: Vec<Series>) -> Option<LinePlot> {
     (!curves.is_empty()).then(|| LinePlot::over_time(label, curves))
 }
 
-/// Two units of curves with the labels of their axes, and the label of an axis of both.
-struct Labels {
-    of_units: [(&'static str, &'static str); 2],
+/// Curves of two units.
+pub(super) struct OfUnits {
+    /// The curves with their units.
+    curves: Vec<(&'static str, Series)>,
+    /// The units with the labels of their axes.
+    labels: [(&'static str, &'static str); 2],
+    /// Label of an axis of both.
     of_both: &'static str,
 }
 
-/// Angles in degrees and displacements in mm.
-const JOINTS: Labels = Labels {
-    of_units: [
-        ("rad", "joint angle [°]"),
-        ("mm", "joint displacement [mm]"),
-    ],
-    of_both: "joint coordinate [°, mm]",
-};
-
-/// Distances in mm and angles in degrees.
-const DEVIATIONS: Labels = Labels {
-    of_units: [("m", "deviation [mm]"), ("rad", "deviation [°]")],
-    of_both: "deviation [°, mm]",
-};
-
-/// Curves with their units.
-type WithUnit = Vec<(&'static str, Series)>;
-
-impl Labels {
+impl OfUnits {
     /// Curves by their units, each with the label of its axis.
-    fn by_unit(&self, curves: &WithUnit) -> Vec<(&'static str, Vec<Series>)> {
-        let of = |unit| curves.iter().filter(move |(other, _)| *other == unit);
-        let each = self.of_units;
-        each.map(|(unit, label)| (label, of(unit).map(|(_, curve)| curve.clone()).collect()))
-            .to_vec()
+    pub(super) fn panels(self) -> Vec<(&'static str, Vec<Series>)> {
+        let of = |unit| self.curves.iter().filter(move |(other, _)| *other == unit);
+        let panel = |(unit, label)| (label, of(unit).map(|(_, curve)| curve.clone()).collect());
+        self.labels.map(panel).to_vec()
     }
 
     /// All curves over one axis.
-    fn plot(&self, curves: WithUnit) -> Option<LinePlot> {
-        let has = |unit| curves.iter().any(|(other, _)| *other == unit);
-        let [(first, of_first), (second, of_second)] = self.of_units;
+    pub(super) fn plot(self) -> Option<LinePlot> {
+        let has = |unit| self.curves.iter().any(|(other, _)| *other == unit);
+        let [(first, of_first), (second, of_second)] = self.labels;
         let label = match (has(first), has(second)) {
             (_, false) => of_first,
             (false, true) => of_second,
             (true, true) => self.of_both,
         };
-        plot(label, curves.into_iter().map(|(_, curve)| curve).collect())
+        plot(
+            label,
+            self.curves.into_iter().map(|(_, curve)| curve).collect(),
+        )
     }
 }
 
@@ -132,7 +120,8 @@ fn shown(unit: &str) -> f64 {
     }
 }
 
-fn of_joints(system: &System, trajectory: &Trajectory) -> WithUnit {
+/// Joint coordinates over time in s: angles in degrees and displacements in mm.
+pub(super) fn joints(system: &System, trajectory: &Trajectory) -> OfUnits {
     let coordinates = trajectory.coordinates(system).into_iter().enumerate();
     let curve = coordinates.map(|(i, coordinate)| {
         let unit = coordinate.unit;
@@ -140,36 +129,28 @@ fn of_joints(system: &System, trajectory: &Trajectory) -> WithUnit {
         let points = over_time(&trajectory.times, values);
         (unit, Series::curve(coordinate.name, points, style::hue(i)))
     });
-    curve.collect()
+    OfUnits {
+        curves: curve.collect(),
+        labels: [
+            ("rad", "joint angle [°]"),
+            ("mm", "joint displacement [mm]"),
+        ],
+        of_both: "joint coordinate [°, mm]",
+    }
 }
 
-/// Joint coordinates by their units, each with the label of its axis.
-pub(super) fn joints(system: &System, trajectory: &Trajectory) -> Vec<(&'static str, Vec<Series>)> {
-    JOINTS.by_unit(&of_joints(system, trajectory))
-}
-
-/// `joint_angles.svg`: joint coordinates over time in s.
-pub(super) fn joint_plot(system: &System, trajectory: &Trajectory) -> Option<LinePlot> {
-    JOINTS.plot(of_joints(system, trajectory))
-}
-
-fn of_deviations(times: &[f64], tracked: &[Tracked]) -> WithUnit {
+/// Deviations of markers and joints from their references over time in s: distances in mm and angles in degrees.
+pub(super) fn deviations(times: &[f64], tracked: &[Tracked]) -> OfUnits {
     let curve = |(i, one): (usize, &Tracked)| {
         let values = one.deviation.iter().map(|e| shown(one.unit) * e);
         let points = over_time(times, values);
         (one.unit, Series::curve(&one.name, points, style::hue(i)))
     };
-    tracked.iter().enumerate().map(curve).collect()
-}
-
-/// Deviations of markers and joints from their references by their units, each with the label of its axis.
-pub(super) fn deviations(times: &[f64], tracked: &[Tracked]) -> Vec<(&'static str, Vec<Series>)> {
-    DEVIATIONS.by_unit(&of_deviations(times, tracked))
-}
-
-/// `tracking.svg`: deviations over time in s.
-pub(super) fn deviation_plot(times: &[f64], tracked: &[Tracked]) -> Option<LinePlot> {
-    DEVIATIONS.plot(of_deviations(times, tracked))
+    OfUnits {
+        curves: tracked.iter().enumerate().map(curve).collect(),
+        labels: [("m", "deviation [mm]"), ("rad", "deviation [°]")],
+        of_both: "deviation [°, mm]",
+    }
 }
 
 /// `tracking.csv`: one row per instant with each coordinate, its reference, and the deviation; none where nothing is followed.
@@ -259,16 +240,6 @@ pub(super) fn charges(
     (label, charges)
 }
 
-/// `charge.svg`: the charges over time in s.
-pub(super) fn charge_plot(
-    system: &System,
-    trajectory: &Trajectory,
-    observations: &Observations,
-) -> Option<LinePlot> {
-    let (label, charges) = charges(system, trajectory, observations);
-    plot(label, charges)
-}
-
 /// The observed columns that are energies of the system, over time in s; in N mm, which is mJ.
 pub(super) fn energies(trajectory: &Trajectory, observations: &Observations) -> Vec<Series> {
     let columns = observations.columns.iter();
@@ -284,12 +255,4 @@ pub(super) fn energies(trajectory: &Trajectory, observations: &Observations) -> 
 fn is_energy(name: &str) -> bool {
     let is_of_one = ["_electrical_energy", "_mechanical_work"].map(|end| name.ends_with(end));
     (name.contains("energy") && is_of_one == [false; 2]) || name == "mechanical_work"
-}
-
-/// `energy.svg`: the energies over time in s.
-pub(super) fn energy_plot(
-    trajectory: &Trajectory,
-    observations: &Observations,
-) -> Option<LinePlot> {
-    plot("energy [mJ]", energies(trajectory, observations))
 }

@@ -104,12 +104,15 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
     });
     let paths = || tip_path::svg(system, &motions, tracked, waypoints, view, origin);
     let paths = || (!system.markers.is_empty()).then(paths);
-    let joints = || drawn(curves::joint_plot(system, trajectory));
-    let charges = || curves::charge_plot(system, trajectory, observations);
-    let charges = || drawn(charges().filter(|_| !skins.list.is_empty()));
-    let energies = || drawn(curves::energy_plot(trajectory, observations));
+    let joints = || drawn(curves::joints(system, trajectory).plot());
+    let charges = || {
+        let (label, charges) = curves::charges(system, trajectory, observations);
+        drawn(curves::plot(label, charges).filter(|_| !skins.list.is_empty()))
+    };
+    let energies = || curves::energies(trajectory, observations);
+    let energies = || drawn(curves::plot("energy [mJ]", energies()));
     let tracking_csv = || curves::tracking_csv(times, tracked, origin);
-    let tracking = || drawn(curves::deviation_plot(times, tracked));
+    let tracking = || drawn(curves::deviations(times, tracked).plot());
     let before: [(&'static str, Maker<'_>); 5] = [
         ("trajectory.csv", &trajectory_csv),
         ("controls.csv", &controls_csv),

@@ -4,11 +4,11 @@ use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::model::system::Fidelity;
 use crate::model::{Model, SolidBlock};
-use crate::report::canvas::{Canvas, CanvasPoint, Stroke};
+use crate::report::canvas::{Canvas, CanvasPoint, Stroke, length};
 use crate::report::style::{self, Colour};
 use crate::report::view::View;
 use nalgebra::Vector3;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 /// Most instants that an animation shows.
 const FRAMES: usize = 200;
@@ -199,25 +199,34 @@ pub fn normal(corners: &[Vector3<f64>; 4]) -> Vector3<f64> {
     (corners[2] - corners[0]).cross(&(corners[3] - corners[1]))
 }
 
-/// Edges at which faces meet at an angle.
-fn sharp(quads: &[[usize; 4]], places: &[Vector3<f64>]) -> Vec<[bool; 4]> {
-    let key = |quad: &[usize; 4], i: usize| {
-        let (a, b) = (quad[i], quad[(i + 1) % 4]);
-        [a.min(b), a.max(b)]
-    };
-    let unit = |quad: &[usize; 4]| normal(&quad.map(|corner| places[corner])).normalize();
-    let mut normals: HashMap<[usize; 2], Vec<Vector3<f64>>> = HashMap::new();
-    for quad in quads {
-        for i in 0..4 {
-            normals.entry(key(quad, i)).or_default().push(unit(quad));
+/// The edges of faces, from the lower vertex to the higher one, with the faces that meet there.
+pub(super) fn edges<const N: usize>(faces: &[[usize; N]]) -> BTreeMap<[usize; 2], Vec<usize>> {
+    let mut edges: BTreeMap<[usize; 2], Vec<usize>> = BTreeMap::new();
+    for (face, vertices) in faces.iter().enumerate() {
+        for i in 0..N {
+            edges.entry(edge_of(vertices, i)).or_default().push(face);
         }
     }
-    let is_sharp = |edge: [usize; 2]| match normals[&edge][..] {
-        [a, b] => a.dot(&b) < SHARP,
+    edges
+}
+
+/// The edge of a face that begins at a corner.
+fn edge_of<const N: usize>(face: &[usize; N], corner: usize) -> [usize; 2] {
+    let (a, b) = (face[corner], face[(corner + 1) % N]);
+    [a.min(b), a.max(b)]
+}
+
+/// Edges at which faces meet at an angle.
+fn sharp(quads: &[[usize; 4]], places: &[Vector3<f64>]) -> Vec<[bool; 4]> {
+    let unit = |quad: &[usize; 4]| normal(&quad.map(|corner| places[corner])).normalize();
+    let normals: Vec<_> = quads.iter().map(unit).collect();
+    let edges = edges(quads);
+    let is_sharp = |edge: [usize; 2]| match edges[&edge][..] {
+        [a, b] => normals[a].dot(&normals[b]) < SHARP,
         _ => true,
     };
-    let edges = |quad: &[usize; 4]| std::array::from_fn(|i| is_sharp(key(quad, i)));
-    quads.iter().map(edges).collect()
+    let of_face = |quad: &[usize; 4]| std::array::from_fn(|i| is_sharp(edge_of(quad, i)));
+    quads.iter().map(of_face).collect()
 }
 
 /// Width of the edges of elements as a part of their length, and at most in pt.
@@ -347,8 +356,4 @@ fn edge(fill: Colour, is_sharp: bool, length: f64, is_reference: bool) -> Option
             Some(Stroke::solid(fill.mix(style::INK, 0.35), width).faint(0.6))
         }
     }
-}
-
-fn length([a, b]: [CanvasPoint; 2]) -> f64 {
-    (b[0] - a[0]).hypot(b[1] - a[1])
 }

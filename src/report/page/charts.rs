@@ -130,10 +130,11 @@ fn charts_over_time(run: &Run<'_>) -> Vec<Value> {
         (title, alone(label, curves))
     };
     let energies = curves::energies(motion, observed);
+    let deviations = curves::deviations(&motion.times, run.tracked);
     let all = [
-        ("Joints", curves::joints(system, motion)),
+        ("Joints", curves::joints(system, motion).panels()),
         ("Markers", alone("place [mm]", named(&marker))),
-        ("Deviations", curves::deviations(&motion.times, run.tracked)),
+        ("Deviations", deviations.panels()),
         of_each("Stretches", "stretch", "_stretch"),
         of_each("Tensions", "tension [N]", "_tension"),
         ("Charges", vec![curves::charges(system, motion, observed)]),
