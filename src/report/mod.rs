@@ -20,7 +20,6 @@ mod run;
 pub mod sampled;
 pub mod sensitivities;
 pub mod skins;
-mod snapshots;
 pub mod solids;
 pub mod style;
 pub mod table;
@@ -97,7 +96,7 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
     let configuration = || Some(pose::svg(system, coloured, skins, &run.shown(), origin));
     let animation = || gltf::text(system, coloured, skins, origin);
     let animation = || run.figures.gltf.then(animation).flatten();
-    let stills = || snapshots::svg(system, coloured, skins, view, origin);
+    let stills = || pose::snapshots(system, coloured, skins, view, origin);
     let inputs = InputKind::ALL.map(|kind| {
         let svg = move || Some(curves::input_svg(system, trajectory, kind, origin)?.1);
         (curves::input_names(kind).0, svg)

@@ -1,11 +1,10 @@
 //! Variants of one problem, solved in parallel, each in a folder of its own; variants that are solved already are not solved again.
 //!
-//! - `read`, `values`: the sweep file and its variants.
+//! - `read`: the sweep file and its variants.
 //! - `variant_record`: record of a variant; `table`: all of them together, and their page.
 
 mod read;
 mod table;
-mod values;
 mod variant_record;
 
 use crate::app::{
