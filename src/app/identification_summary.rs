@@ -42,21 +42,16 @@ impl Identification<'_> {
         let row = |i| constants.clone().map(|j| pair(i, j)).collect::<Vec<_>>();
         let each = |one| self.constant(one);
         let undetermined = found.information.undetermined.iter();
-        let starts: Vec<_> = self.starts.iter().map(|one| self.start(one)).collect();
+        let starts = self.starts.iter().map(|one| self.start(one));
         let held_out = found.held_out.iter().map(|one| self.prediction(one));
         let experiments = found.experiments.iter().map(|one| self.candidate(one));
         Entries::default()
-            .with("constants", constants.clone().map(each).collect::<Vec<_>>())
+            .with_each("constants", constants.clone().map(each))
             // None of constants without an interval.
-            .with(
-                "correlation",
-                constants.clone().map(row).collect::<Vec<_>>(),
-            )
-            .with(
+            .with_each("correlation", constants.clone().map(row))
+            .with_each(
                 "undetermined",
-                undetermined
-                    .map(|one| self.combination(one))
-                    .collect::<Vec<_>>(),
+                undetermined.map(|one| self.combination(one)),
             )
             .with("readings", found.fit.residuals().len())
             .with("unknowns", found.fit.free())
@@ -68,10 +63,10 @@ impl Identification<'_> {
             // Probability of so large residuals, where the standard deviations are known.
             .with_some("p", found.p)
             .with("grid", self.grid())
-            .with_any("starts", &starts)
+            .with_any("starts", starts)
             .with("fitted", self.residuals(&found.series, &found.whiteness))
-            .with("held_out", held_out.collect::<Vec<_>>())
-            .with_any("next_experiments", &experiments.collect::<Vec<_>>())
+            .with_each("held_out", held_out)
+            .with_any("next_experiments", experiments)
     }
 
     /// In words, a line for each constant and verdict.
@@ -164,7 +159,7 @@ impl Identification<'_> {
         };
         Entries::default()
             .with("text", words(self.task, one))
-            .with("powers", one.powers.iter().map(power).collect::<Vec<_>>())
+            .with_each("powers", one.powers.iter().map(power))
             .with_some("determined", self.determined(one))
     }
 
@@ -191,7 +186,7 @@ impl Identification<'_> {
         let doubled = |&recording: &usize| 2 * grid.intervals[recording];
         let largest = Some(bias.largest()).filter(|change| change.is_finite());
         Entries::default()
-            .with("intervals", fitted.iter().map(doubled).collect::<Vec<_>>())
+            .with_each("intervals", fitted.iter().map(doubled))
             .with("halvings", bias.halvings)
             .with_some("largest_change", largest)
             .with("confirmed", bias.is_confirmed)
@@ -203,10 +198,10 @@ impl Identification<'_> {
             let joint = Entries::default().with("name", name).with("unit", unit);
             joint.with("value", value).with("rate", rate)
         };
-        let joints: Vec<_> = one.in_si(self.system).map(joint).collect();
+        let joints = one.in_si(self.system).map(joint);
         Entries::default()
             .with("recording", &self.task.recordings[one.recording].name)
-            .with("joints", joints)
+            .with_each("joints", joints)
     }
 
     /// Residuals of quantities of recordings, with the roots of their mean squares in SI units.
@@ -249,7 +244,7 @@ impl Identification<'_> {
             // It exceeds this with a probability of 1 %.
             .with("quantile", one.quantile)
             .with("p", one.p)
-            .with("not_white", not_white.collect::<Vec<_>>())
+            .with_each("not_white", not_white)
             // The same as the statistic by the deviations of the readings alone.
             .with("reduced_chi_square", one.reduced)
             .with("residuals", self.residuals(&one.series, &one.whiteness))
@@ -265,7 +260,7 @@ impl Identification<'_> {
         let errors = (0..self.task.parameters.len()).map(error);
         Entries::default()
             .with("name", &self.task.candidates[one.candidate].name)
-            .with("standard_errors", errors.collect::<Vec<_>>())
+            .with_each("standard_errors", errors)
             .with("undetermined", information.undetermined.len())
     }
 }

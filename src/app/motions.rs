@@ -138,8 +138,7 @@ impl Together<'_> {
             }
         }
         let infeasibility = list.iter().map(|one| one.optimum.infeasibility);
-        let parameters: Vec<_> = self.parameters().map(parameter).collect();
-        let motions: Vec<_> = (0..list.len()).map(|number| self.motion(number)).collect();
+        let motions = (0..list.len()).map(|number| self.motion(number));
         Entries::default()
             .with("command", &self.request.command)
             .with("input", self.request.input.display().to_string())
@@ -158,12 +157,12 @@ impl Together<'_> {
                 "infeasibility",
                 infeasibility.fold(0.0, |worst, one| one.max(worst)),
             )
-            .with_any("parameters", &parameters)
+            .with_any("parameters", self.parameters().map(parameter))
             .with_any("shared_inputs", &self.motions.shared_inputs)
             .with_some("gap", gap(whole.gap, verdict))
             // The greatest errors of all motions.
             .with_some("accuracy", accuracy.as_ref())
-            .with("motions", motions)
+            .with_each("motions", motions)
             .with("seconds", Entries::default().with("total", seconds))
             .with("versions", versions())
     }

@@ -117,7 +117,7 @@ fn entries(found: &Continuation) -> Entries {
     Entries::default()
         .with("points", found.points.len())
         .with("largest_fraction", largest_fraction(found))
-        .with("lost", lost.collect::<Vec<_>>())
+        .with_each("lost", lost)
 }
 
 /// Rows of the page; `shown` is the fraction of the voltages of the equilibrium that is drawn.

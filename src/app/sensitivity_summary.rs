@@ -56,7 +56,7 @@ pub(super) fn entries(system: &System, motion: &Solution, of: &Sensitivity) -> E
         // Absent where it is given.
         .with_some("duration", duration)
         // Constants that were sought.
-        .with_any("parameters", &parameters.collect::<Vec<_>>())
+        .with_any("parameters", parameters)
         .with("inputs", inputs(system, motion, of))
         .with("valid", valid)
         // Bounds that are reached or left at once: the derivatives hold to one side alone.

@@ -50,7 +50,6 @@ pub(super) fn program(system: &System, control: &Control, result: &SolveResult) 
         .with("jacobian", per_interval(seconds.jacobian, counts.jacobian))
         .with("hessian", per_interval(seconds.hessian, counts.hessian));
     let infeasibility = Some(optimum.infeasibility).filter(|value| value.is_finite());
-    let parameters: Vec<_> = motion.parameters.iter().map(parameter).collect();
     Entries::default()
         .with("objective", solution.objective)
         .with("objective_units", control.objective_units(system))
@@ -69,7 +68,7 @@ pub(super) fn program(system: &System, control: &Control, result: &SolveResult) 
         // The worst rows that do not hold; none of a solution.
         .with("violations", &optimum.violated)
         .with_some("resimulation", optimum.resimulation.as_ref())
-        .with_any("parameters", &parameters)
+        .with_any("parameters", motion.parameters.iter().map(parameter))
         .with_some("gap", gap(size.gap, &result.verdict))
         // Motion after a goal that no known voltages hold.
         .with_some("afterwards", optimum.afterwards.as_ref())

@@ -62,15 +62,10 @@ pub(super) fn write(
         // Instants that all points have, as parts of the duration.
         .with("instants", common(results))
         .with("resimulated_finer", FINER)
-        .with("measures", measures.collect::<Vec<_>>())
-        .with(
-            "methods",
-            methods
-                .map(|m| of_method(results, m, judged))
-                .collect::<Vec<_>>(),
-        )
+        .with_each("measures", measures)
+        .with_each("methods", methods.map(|m| of_method(results, m, judged)))
         // Points that were run for the reference alone.
-        .with("reference_points", reference.collect::<Vec<_>>())
+        .with_each("reference_points", reference)
         .with("machine", machine())
         .with("versions", versions);
     atomic::write(path, record.laid_out().as_bytes())
@@ -89,7 +84,7 @@ fn of_measure(study: &Study, judged: &Judged) -> Entries {
             // Observed in each three successive points; nothing where it is not sensible.
             .with("orders", &limit.orders)
             .with("uncertainty", limit.uncertainty.map(si))
-            .with("value", value.collect::<Vec<_>>())
+            .with_each("value", value)
     });
     let unit = match measure.unit().suffix() {
         "" => "1",
@@ -100,7 +95,7 @@ fn of_measure(study: &Study, judged: &Judged) -> Entries {
         .with("unit", unit)
         // Size to which an error is relative.
         .with("scale", si(judged.scale))
-        .with("references", limits.collect::<Vec<_>>())
+        .with_each("references", limits)
 }
 
 /// A method with its points and the order that the errors of each measure show.
@@ -115,7 +110,7 @@ fn of_method(results: &Results<'_>, m: usize, judged: &[Judged]) -> Entries {
         .with("name", &method.name)
         .with("refined", &method.refined)
         .with("orders", orders.collect::<BTreeMap<_, _>>())
-        .with("points", points.collect::<Vec<_>>())
+        .with_each("points", points)
 }
 
 /// A point, at its place by method and number in what was judged; SI units.

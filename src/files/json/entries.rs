@@ -24,8 +24,22 @@ impl Entries {
         }
     }
 
+    /// Adds a list.
+    pub(crate) fn with_each<T: Serialize>(
+        self,
+        name: &'static str,
+        list: impl IntoIterator<Item = T>,
+    ) -> Self {
+        self.with(name, list.into_iter().collect::<Vec<_>>())
+    }
+
     /// Adds a list that is not empty.
-    pub(crate) fn with_any<T: Serialize>(self, name: &'static str, list: &[T]) -> Self {
+    pub(crate) fn with_any<T: Serialize>(
+        self,
+        name: &'static str,
+        list: impl IntoIterator<Item = T>,
+    ) -> Self {
+        let list: Vec<_> = list.into_iter().collect();
         self.with_some(name, Some(list).filter(|list| !list.is_empty()))
     }
 
