@@ -57,7 +57,7 @@ pub use multistart::{solve_from_starts, solve_text_from_starts};
 pub use program::{
     FileHorizon, SiController, changed_text, check, check_text, checked, with_program,
 };
-pub(crate) use progress::{Progress, progress_bar};
+pub(crate) use progress::progress_bar;
 pub use progress::{ProgressDisplay, Reached};
 pub use request::{CommandInput, CommandOutput, PageWanted};
 pub use summary::written_summary;

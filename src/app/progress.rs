@@ -47,7 +47,7 @@ fn show_phases() {
 
 /// A line that changes during a run.
 #[derive(Debug)]
-pub(crate) struct Progress {
+pub(super) struct Progress {
     bar: ProgressBar,
     began: Instant,
     before: Option<ProgressBar>,
@@ -68,7 +68,7 @@ impl Progress {
     }
 
     /// Several runs, each of which is called `what`.
-    pub(crate) fn of_runs(shown: ProgressDisplay, what: &str, count: usize) -> Self {
+    pub(super) fn of_runs(shown: ProgressDisplay, what: &str, count: usize) -> Self {
         let template =
             format!("{{elapsed_precise}} {{wide_bar}} {what} {{pos}} of {{len}} {{msg}}");
         Self::starting(progress_bar(shown, Some(count), &template))
@@ -106,7 +106,7 @@ impl Progress {
     }
 
     /// Numbers of starts that have ended and of those that are solved, and the best objective.
-    pub(crate) fn run(&self, ended: usize, solved: usize, best: Option<f64>) {
+    pub(super) fn run(&self, ended: usize, solved: usize, best: Option<f64>) {
         self.bar.set_position(ended as u64);
         let best = best.map_or_else(String::new, |best| format!(", best objective {best:.6e}"));
         let waiting = self.bar.length().unwrap_or(0).saturating_sub(ended as u64);

@@ -8,7 +8,7 @@ mod table;
 mod variant_record;
 
 use crate::app::{
-    Batch, CommandError, CommandInput, CommandOutput, FolderRecord, Found, PageWanted, Progress,
+    Batch, CommandError, CommandInput, CommandOutput, FolderRecord, Found, PageWanted,
     ProgressDisplay, RunEnd, RunIn, check_run_in, make_folder, run_all,
 };
 use crate::report::origin::Origin;
@@ -18,7 +18,6 @@ use crate::stop;
 use crate::sweep::read::{Sweep, Variant, read_sweep};
 use crate::sweep::variant_record::VariantRecord;
 use std::collections::{BTreeMap, BTreeSet};
-use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Instant;
@@ -143,26 +142,17 @@ fn solve<'a>(
         max_seconds: request.max_seconds,
         began,
     };
-    let progress = Progress::of_runs(request.progress, "variant", todo.len());
-    let mut counts = [0, 0];
-    let mut unwritten = None;
-    run_all(&batch, &mut |index, end| {
-        let mut kept = VariantRecord::from_end(todo[index], &end, &folder(todo[index]));
+    run_all(&batch, "variant", request.progress, &mut |index, end| {
+        let (variant, folder) = (todo[index], folder(todo[index]));
+        let mut kept = VariantRecord::from_end(variant, &end, &folder);
         if !kept.is_unfinished() {
-            let folder = folder(todo[index]);
-            let written = make_folder(&folder).and_then(|()| kept.write(&folder));
-            unwritten = written.err();
+            make_folder(&folder)?;
+            kept.write(&folder)?;
         }
-        counts[0] += 1;
-        counts[1] += usize::from(kept.is_solved);
-        progress.run(counts[0], counts[1], None);
-        ends.insert(todo[index].identity.as_str(), kept);
-        match unwritten {
-            Some(_) => ControlFlow::Break(()),
-            None => ControlFlow::Continue(()),
-        }
-    })?;
-    unwritten.map_or(Ok(()), |error| Err(error.into()))
+        let is_solved = kept.is_solved;
+        ends.insert(variant.identity.as_str(), kept);
+        Ok((is_solved, None))
+    })
 }
 
 /// Writes table and page.

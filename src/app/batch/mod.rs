@@ -10,6 +10,7 @@ pub(crate) use launch::{Batch, RunEnd, Said, task_runs_at_once};
 pub use launch::{RunIn, end_with_parent};
 
 use crate::app::error::CommandError;
+use crate::app::progress::{Progress, ProgressDisplay};
 use crate::app::request::CommandInput;
 use crate::app::task;
 use crate::workflow::parallel_map::{cores, parallel_map};
@@ -17,20 +18,38 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
-/// Runs all of a batch; `told` is called at each end, in the thread that calls, and may let no other one begin.
+/// Runs all of a batch with a line of progress, in which each is called `what`. `told` is called at each end, in the thread that calls; it returns
+/// whether the run is solved, and the best objective so far. Where it fails, no other run begins.
 ///
 /// # Errors
-/// A process cannot be had.
+/// The first of `told`, or a process cannot be had.
 pub(crate) fn run_all(
     batch: &Batch<'_>,
-    told: &mut dyn FnMut(usize, RunEnd) -> ControlFlow<()>,
+    what: &str,
+    shown: ProgressDisplay,
+    told: &mut dyn FnMut(usize, RunEnd) -> Result<(bool, Option<f64>), CommandError>,
 ) -> Result<(), CommandError> {
+    let progress = Progress::of_runs(shown, what, batch.runs.len());
+    let (mut ended, mut solved, mut failed) = (0, 0, None);
+    let told = &mut |index, end| match told(index, end) {
+        Ok((is_solved, best)) => {
+            ended += 1;
+            solved += usize::from(is_solved);
+            progress.run(ended, solved, best);
+            ControlFlow::Continue(())
+        }
+        Err(error) => {
+            failed.get_or_insert(error);
+            ControlFlow::Break(())
+        }
+    };
     match batch.run_in {
         RunIn::Threads | RunIn::Here => run_in_threads(batch, cores(), told),
         RunIn::InTurn => run_in_threads(batch, 1, told),
         RunIn::Processes => processes::run_all(batch, told),
         RunIn::HyperQueue => hyperqueue::run_all(batch, told),
-    }
+    }?;
+    failed.map_or(Ok(()), Err)
 }
 
 /// Checks that solves can run there.

@@ -8,7 +8,6 @@ mod files;
 mod rank;
 
 use std::fs;
-use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
@@ -16,7 +15,6 @@ use crate::app::batch::{Batch, RunIn, run_all, task_runs_at_once};
 use crate::app::error::CommandError;
 use crate::app::kept::overwrite_check::{make_folder, make_folder_of};
 use crate::app::no_equilibrium;
-use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput, key};
 use crate::app::task::{read, refuse_replacing};
 use crate::control::Motion;
@@ -83,7 +81,13 @@ pub fn solve_text_from_starts(
         max_seconds: request.max_seconds,
         began,
     };
-    let mut ended = run_starts(request, &batch, &plan)?;
+    let mut ended: Vec<Ended> = Vec::new();
+    run_all(&batch, "start", request.progress, &mut |index, end| {
+        let one = Ended::from_run(plan[index], &end, &folder)?;
+        let is_solved = one.is_solved;
+        ended.push(one);
+        Ok((is_solved, best(&ended).and_then(|i| ended[i].objective)))
+    })?;
     ended.sort_by_key(|one| one.start);
     let distinct = number_optima(&mut ended);
     write(request, &batch, &ended, distinct)
@@ -142,35 +146,6 @@ fn plan(starts: usize, seed: u64) -> Vec<Start> {
             seed: (number > 1).then(|| seed_of(number)),
         })
         .collect()
-}
-
-/// Runs all starts, in the order in which they end.
-fn run_starts(
-    request: &CommandInput,
-    batch: &Batch<'_>,
-    plan: &[Start],
-) -> Result<Vec<Ended>, CommandError> {
-    let progress = Progress::of_runs(request.progress, "start", plan.len());
-    let mut ended: Vec<Ended> = Vec::new();
-    let mut refused = None;
-    run_all(batch, &mut |index, end| {
-        match Ended::from_run(plan[index], &end, batch.folder) {
-            Ok(one) => ended.push(one),
-            Err(error) => refused = refused.take().or(Some(error)),
-        }
-        let solved = ended.iter().filter(|one| one.is_solved).count();
-        let least = best(&ended).and_then(|i| ended[i].objective);
-        progress.run(ended.len(), solved, least);
-        // Where one finds the input wrong no other one begins.
-        match refused {
-            Some(_) => ControlFlow::Break(()),
-            None => ControlFlow::Continue(()),
-        }
-    })?;
-    match refused {
-        Some(error) => Err(error),
-        None => Ok(ended),
-    }
 }
 
 /// Starts of an earlier command.
