@@ -118,7 +118,7 @@ pub(super) fn at(
         ..Seconds::default()
     };
     let output = command_output(&summary, &rest, &folder);
-    summary.rest = Some(rest.entries());
+    summary.task = rest.entries();
     let title = match loss {
         None if status == UNSTABLE => "An unstable equilibrium",
         None => "Static equilibrium",

@@ -60,7 +60,7 @@ pub(super) fn run(
         starts: &starts,
     };
     let text = identification.text();
-    summary.identification = Some(identification.entries());
+    summary.task = identification.entries();
     let mut files = FileSet::in_folder(&folder);
     EARLIER.iter().for_each(|name| files.remove(name));
     files.add(

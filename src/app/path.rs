@@ -65,7 +65,7 @@ pub(super) fn follow(
     let (plan, uncounted) = plan(&model, stopped.is_some());
     summary.plan = plan;
     summary.notes.warn("left_out", uncounted);
-    summary.path = Some(entries(&found));
+    summary.task = Entries::default().with("path", entries(&found));
     summary.domain = warnings::outside_domain(&out_of_domain(&model, &path.discrete));
     let note = warnings::domain_note(&summary.domain, false);
     summary.notes.warn("outside_domain", note);

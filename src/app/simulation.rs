@@ -259,7 +259,7 @@ impl<'a> Ended<'a> {
         let mut summary = Summary::new(run.request, result.word(), coordinates);
         summary.plan = plan.clone();
         summary.message = simulated.failure.as_ref().map(ToString::to_string);
-        summary.simulation = Some(self.entries(None));
+        summary.task = self.entries(None);
         summary.accuracy.clone_from(&result.accuracy);
         summary.seconds = Seconds {
             total: run.began.elapsed().as_secs_f64(),
@@ -315,7 +315,7 @@ impl<'a> Ended<'a> {
     /// Adds what is observed to the summary, and the notes on it.
     fn summarise(&self, observed: &Observed, summary: &mut Summary) {
         let assessment = &observed.assessment;
-        summary.simulation = Some(self.entries(assessment.neglected));
+        summary.task = self.entries(assessment.neglected);
         summary.domain.clone_from(&assessment.outside);
         summary.blocks.clone_from(&observed.blocks);
         summary.energies = EnergySummary::new(&assessment.exchange);

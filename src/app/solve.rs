@@ -112,7 +112,7 @@ impl Solved<'_> {
         let mut summary =
             Summary::new(self.request, verdict.word, optimum.model.coordinates.name());
         summary.message.clone_from(&verdict.message);
-        summary.program = Some(program(self.system, control, result));
+        summary.task = program(self.system, control, result);
         summary.accuracy.clone_from(&result.accuracy);
         let model = optimum.sought.as_ref().unwrap_or(&optimum.model);
         summary.plan = Plan::from_model(model, Some(control), MEASURED);

@@ -37,10 +37,9 @@ pub(super) struct Summary {
     /// Warnings and notes on the result.
     #[serde(skip_serializing_if = "Remarks::is_empty")]
     pub(super) notes: Remarks,
+    /// Program and solution of a control problem; report of a simulation; an equilibrium or a path of them; constants that were identified.
     #[serde(flatten)]
-    pub(super) program: Option<Entries>,
-    #[serde(flatten)]
-    pub(super) simulation: Option<Entries>,
+    pub(super) task: Entries,
     /// The regulator along an optimum.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) feedback: Option<RegulatorReport>,
@@ -69,13 +68,6 @@ pub(super) struct Summary {
     pub(super) energies: Option<EnergySummary>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) comparison: Option<Comparison>,
-    #[serde(flatten)]
-    pub(super) rest: Option<Entries>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) path: Option<Entries>,
-    /// Constants that were fitted to recordings.
-    #[serde(flatten)]
-    pub(super) identification: Option<Entries>,
     /// Muscles and blocks that leave the domain of the first-order dielectric.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(super) domain: Vec<Outside>,
