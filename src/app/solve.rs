@@ -32,12 +32,6 @@ use crate::workflow::resimulate::under_constant_voltages;
 
 /// Length of the motion under constant voltages that is drawn next to the optimal one, in durations.
 const COMPARED: usize = 3;
-/// Tables and figures of sensitivities.
-const SENSITIVITIES: [&str; 3] = [
-    "sensitivities.csv",
-    "sensitivities.svg",
-    "voltages_tolerances.svg",
-];
 /// Statuses of a solve that might have gone on.
 const MIGHT_GO_ON: [&str; 3] = ["interrupted", "time_limit", "iteration_limit"];
 
@@ -237,25 +231,18 @@ fn add_observed(summary: &mut Summary, result: &SolveResult) {
     summary.notes.warn("tolerance", warnings);
 }
 
-/// Writes tables and figures of sensitivities, where there are any.
+/// Writes tables and figures of sensitivities where there are any; those of an earlier run do not stay next to other results.
 fn write_sensitivities(
     result: &SolveResult,
     files: &mut FileSet,
     origin: &Origin,
 ) -> Result<(), WriteError> {
     let (list, system) = (&result.sensitivities, &result.optimum.model.system);
-    if list.is_empty() {
-        // Those of an earlier run do not stay next to other results.
-        SENSITIVITIES.iter().for_each(|name| files.remove(name));
-        return Ok(());
-    }
-    let text = sensitivities::table(system, &result.trajectory, list, origin);
-    files.add("sensitivities.csv", text.as_bytes())?;
-    if let Some(svg) = sensitivities::svg(list, origin) {
-        files.add("sensitivities.svg", svg.as_bytes())?;
-    }
-    if let Some(plot) = sensitivities::voltages(system, &result.trajectory, list) {
-        files.add("voltages_tolerances.svg", plot.svg(origin).as_bytes())?;
-    }
-    Ok(())
+    let is_any = !list.is_empty();
+    let table = is_any.then(|| sensitivities::table(system, &result.trajectory, list, origin));
+    files.put("sensitivities.csv", table)?;
+    files.put("sensitivities.svg", sensitivities::svg(list, origin))?;
+    let voltages = sensitivities::voltages(system, &result.trajectory, list);
+    let voltages = voltages.map(|plot| plot.svg(origin));
+    files.put("voltages_tolerances.svg", voltages)
 }

@@ -78,6 +78,22 @@ impl FileSet {
         }
     }
 
+    /// Writes a file where there is something to write; that of an earlier result goes otherwise.
+    ///
+    /// # Errors
+    /// As of [`FileSet::add`].
+    pub fn put(
+        &mut self,
+        name: impl AsRef<Path>,
+        bytes: Option<impl AsRef<[u8]>>,
+    ) -> Result<(), WriteError> {
+        match bytes {
+            Some(bytes) => return self.add(name, bytes.as_ref()),
+            None => self.remove(name),
+        }
+        Ok(())
+    }
+
     /// A file of an earlier result, which the set does not have.
     pub fn remove(&mut self, name: impl AsRef<Path>) {
         self.removed.push(self.folder.join(name));

@@ -59,15 +59,12 @@ fn write(
     page: Option<String>,
     texts: Vec<(&str, String)>,
 ) -> Result<(), WriteError> {
-    if page.is_none() {
-        files.remove(PAGE);
-    }
     if run.figures.parts {
         parts::write(files, run.system, run.trajectory, run.origin)?;
     }
-    let page = page.map(|page| (PAGE, page));
-    let mut texts = texts.into_iter().chain(page);
-    texts.try_for_each(|(name, text)| files.add(name, text.as_bytes()))
+    let mut texts = texts.into_iter();
+    texts.try_for_each(|(name, text)| files.add(name, text.as_bytes()))?;
+    files.put(PAGE, page)
 }
 
 /// Makes the text of a file where there is something to show.

@@ -101,17 +101,9 @@ pub(in crate::app) fn add(
     discrete: &DiscreteTrajectory,
     asked: Option<&str>,
 ) -> Result<(), WriteError> {
-    match asked {
-        Some(asked) => {
-            let path = files.folder().join(ENDED);
-            let bytes = bytes(discrete, asked).map_err(WriteError::at(path))?;
-            files.add(ENDED, &bytes)
-        }
-        None => {
-            files.remove(ENDED);
-            Ok(())
-        }
-    }
+    let path = files.folder().join(ENDED);
+    let bytes = asked.map(|asked| bytes(discrete, asked).map_err(WriteError::at(path)));
+    files.put(ENDED, bytes.transpose()?)
 }
 
 /// Replaces the state of a motion that has not ended.

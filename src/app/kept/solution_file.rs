@@ -27,10 +27,7 @@ pub(in crate::app) fn add(
 ) -> Result<(), WriteError> {
     let texts = solution::written(model, solved, ARRAYS);
     let Written { json, arrays } = texts.map_err(WriteError::at(files.folder().join(ARRAYS)))?;
-    match arrays {
-        Some(bytes) => files.add(ARRAYS, &bytes)?,
-        None => files.remove(ARRAYS),
-    }
+    files.put(ARRAYS, arrays)?;
     files.add(NAME, json.as_bytes())
 }
 
