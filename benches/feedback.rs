@@ -18,7 +18,7 @@ use proboscis::model::System;
 use proboscis::tasks::{SimulationRequest, SolveRequest, simulate, solve};
 use proboscis::workflow::Iterate;
 use proboscis::workflow::closed_loop::{ClosedLoop, Deviation};
-use proboscis::workflow::regulator::regulator;
+use proboscis::workflow::regulator::{Along, regulator};
 use random::Random;
 use std::fs;
 use std::ops::ControlFlow;
@@ -62,12 +62,8 @@ fn law(system: &System, control: &Control) -> Law {
     let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
     let found = solve(system, control, SolveRequest::default(), go_on).expect("a right problem");
     assert!(found.verdict.is_solved);
-    let optimum = &found.optimum;
-    let rest = optimum.boundary.rest[1].as_deref();
-    let momentum = &optimum.boundary.start.momentum;
-    let task = Regulator::default();
-    let of = (&optimum.model, control, &task);
-    let regulated = regulator(of, &found.discrete, momentum, rest).expect("gains");
+    let along = Along::new(&found.optimum, &found.discrete, control);
+    let regulated = regulator(along, &Regulator::default()).expect("gains");
     assert!(
         regulated.warnings().is_empty(),
         "{:?}",

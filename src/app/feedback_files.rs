@@ -12,7 +12,7 @@ use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::tasks::SolveResult;
-use crate::workflow::regulator::{Regulated, RegulatedStep, regulator};
+use crate::workflow::regulator::{Along, Regulated, RegulatedStep, regulator};
 
 const JSON: &str = "feedback.json";
 const TABLE: &str = "feedback.csv";
@@ -36,15 +36,8 @@ pub(super) fn add(
         if !result.verdict.is_solved {
             return Err("the motion is no optimum".to_owned());
         }
-        let (model, boundary) = (&optimum.model, &optimum.boundary);
-        let rest = optimum
-            .motion
-            .hold
-            .as_deref()
-            .or(boundary.rest[1].as_deref());
-        let momentum = &boundary.start.momentum;
-        regulator((model, control, task), &result.discrete, momentum, rest)
-            .map_err(|reason| reason.to_string())
+        let along = Along::new(optimum, &result.discrete, control);
+        regulator(along, task).map_err(|reason| reason.to_string())
     });
     match found {
         None => {}

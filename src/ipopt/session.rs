@@ -100,7 +100,7 @@ impl Session {
             }
             None => {
                 self.report.analyses += 1;
-                let (rows, cols): (Vec<_>, Vec<_>) = from_zero(rows).zip(from_zero(cols)).unzip();
+                let [rows, cols] = [rows, cols].map(|list| from_zero(list).collect::<Vec<_>>());
                 let of_unknowns = unknowns.map(Vec::as_slice);
                 let plan = stop::heed(|is_over| {
                     Plan::new_unless(order, &rows, &cols, of_unknowns, is_over)

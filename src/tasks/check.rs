@@ -102,8 +102,9 @@ pub fn check(
     } = prepare(&model, &boundary, &control, None, Counted::No).map_err(stop::unless_stopped)?;
     let sizes = sizes(&program, &model);
     let mut noise = Random::new(SEED);
-    let mut moved = |(x, size): (&f64, &f64)| x + NOISE * size * noise.between(-1.0, 1.0);
-    let x: Vec<f64> = point.x.iter().zip(&sizes).map(&mut moved).collect();
+    let each = point.x.iter().zip(&sizes);
+    let moved = each.map(|(x, size)| x + NOISE * size * noise.between(-1.0, 1.0));
+    let x: Vec<f64> = moved.collect();
     let columns = columns(&program, &mut noise);
     let along = DifferenceVariables {
         columns: &columns,

@@ -231,7 +231,7 @@ fn closed_loop(
     let mut out = ClosedLoop::new(model, counts, discrete, open);
     if let Some(ahead) = &controller.ahead {
         let _unwatched = stop::unwatched();
-        out.limits = LoopLimits::new(ahead, (system, task), discrete)?;
+        out.limits = LoopLimits::new(ahead, system, task, discrete)?;
     }
     Ok((Some(out), stopped))
 }

@@ -106,14 +106,8 @@ fn solve_task(
     let each = each.zip(found.notes).zip(notes);
     let iterations = found.iterations;
     let list = each.map(|((((motion, control), optimum), refined), not_found)| {
-        assessed(
-            motion.system,
-            control,
-            optimum,
-            iterations,
-            refined,
-            not_found,
-        )
+        let system = motion.system;
+        assessed(system, control, optimum, iterations, refined, not_found)
     });
     let list: Vec<SolveResult> = list.collect();
     let whole = found.whole;
@@ -150,7 +144,7 @@ fn assessed(
     let discrete = discrete_trajectory(model, &optimum.motion);
     let trajectory = trajectory(model, &optimum.motion);
     let held = boundary.rest.each_ref().map(Option::as_deref);
-    let [waypoint_values, final_values] = final_values(&optimum, control, (&trajectory, &discrete));
+    let [waypoint_values, final_values] = final_values(&optimum, control, &trajectory, &discrete);
     let mut result = SolveResult {
         exchange: EnergyExchange::new(&model.system, &trajectory, held),
         tracking: followed(&optimum, control, &trajectory),
@@ -169,7 +163,7 @@ fn assessed(
     };
     let not_kept = not_kept.filter(|_| result.verdict.is_solved);
     let can_seek = not_found.is_none() && hold_obstacle(&result.optimum.model, control).is_none();
-    result.remarks = remarks(system, control, &result, (refined, not_kept, can_seek));
+    result.remarks = remarks(system, control, &result, refined, not_kept, can_seek);
     result.remarks.note("hold", not_found);
     add_sensitivities(system, control, &mut result);
     result
@@ -209,7 +203,9 @@ fn remarks(
     system: &System,
     control: &Control,
     result: &SolveResult,
-    (refined, not_kept, can_seek): (Option<String>, Option<String>, bool),
+    refined: Option<String>,
+    not_kept: Option<String>,
+    can_seek: bool,
 ) -> Remarks {
     let optimum = &result.optimum;
     let tested = optimum.resimulation.as_ref();
@@ -232,10 +228,8 @@ fn remarks(
     remarks.note("free_end", free_end(control));
     if control.seeks_hold() && result.verdict.is_solved {
         let held = optimum.boundary.rest[1].as_deref();
-        remarks.note(
-            "hold",
-            held.map(|held| hold_check::note_found(&optimum.model, held)),
-        );
+        let found = held.map(|held| hold_check::note_found(&optimum.model, held));
+        remarks.note("hold", found);
     }
     remarks.note("linear_solver", optimum.solution.linear.note());
     if is_unreached(&optimum.solution) {
@@ -243,19 +237,13 @@ fn remarks(
     }
     remarks.note("earlier_solution", carried(&optimum.carried));
     remarks.note("second_start", optimum.restarted.map(restarted));
-    remarks.warn(
-        "outside_domain",
-        warnings::domain_note(&result.outside, true),
-    );
+    let outside = warnings::domain_note(&result.outside, true);
+    remarks.warn("outside_domain", outside);
     let beyond = out_of_range(&optimum.model, &result.discrete);
-    remarks.warn(
-        "outside_range",
-        warnings::stretch_range_warning(&beyond, true),
-    );
-    remarks.note(
-        "stops",
-        infeasible::stop_notes(&optimum.model.system, &result.trajectory),
-    );
+    let beyond = warnings::stretch_range_warning(&beyond, true);
+    remarks.warn("outside_range", beyond);
+    let stops = infeasible::stop_notes(&optimum.model.system, &result.trajectory);
+    remarks.note("stops", stops);
     remarks.note("tracking", solve_messages::tracking_notes(&result.tracking));
     remarks.note("waypoint_value", ends(&result.waypoint_values));
     remarks.note("final_value", ends(&result.final_values));

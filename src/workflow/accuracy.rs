@@ -124,9 +124,13 @@ pub fn refine<R>(
 ) -> Result<Refined<R>, WorkflowError> {
     let mut timed = |times: usize, before: Option<&R>| {
         let began = Instant::now();
-        attempt(times, before).map(|attempt| (attempt, began.elapsed().as_secs_f64()))
+        attempt(times, before).map(|attempt| {
+            let level = GridLevel::new(&attempt, began.elapsed().as_secs_f64());
+            (attempt, level)
+        })
     };
-    let mut grids = Grids::new(timed(1, None)?, assumed);
+    let (first, level) = timed(1, None)?;
+    let mut grids = Grids::new(first, level, assumed);
     while grids.stopped.is_none() {
         let finer = 2 * grids.times;
         grids.stopped = stop().map(str::to_owned).or_else(|| grids.limit(finer));
@@ -135,14 +139,14 @@ pub fn refine<R>(
         }
         match timed(finer, Some(&grids.kept.run)) {
             Err(error) => grids.stopped = Some(error.to_string()),
-            Ok((fine, seconds)) if !fine.is_complete => {
+            Ok((fine, level)) if !fine.is_complete => {
                 grids.stopped = Some(fine.status.to_owned());
-                grids.levels.push(GridLevel::new(&fine, seconds));
+                grids.levels.push(level);
             }
-            Ok(fine) => {
+            Ok((fine, level)) => {
                 let is_last = match wanted {
-                    AccuracyTarget::Below(requested) => grids.replace(fine, requested),
-                    AccuracyTarget::Estimate => grids.compare(fine),
+                    AccuracyTarget::Below(requested) => grids.replace(fine, level, requested),
+                    AccuracyTarget::Estimate => grids.compare(fine, level),
                 };
                 if is_last {
                     break;
@@ -172,15 +176,15 @@ struct Grids<R> {
 }
 
 impl<R> Grids<R> {
-    /// The first grid, with its seconds.
-    fn new((first, seconds): (Attempt<R>, f64), assumed: f64) -> Self {
+    /// The first grid.
+    fn new(first: Attempt<R>, level: GridLevel, assumed: f64) -> Self {
         let mut convergence = Convergence::default();
         convergence.add(None, &first.sample);
         Self {
             times: 1,
             own: None,
             iterations: first.iterations,
-            levels: vec![GridLevel::new(&first, seconds)],
+            levels: vec![level],
             convergence,
             assumed,
             estimate: Measures::new(),
@@ -204,13 +208,13 @@ impl<R> Grids<R> {
     }
 
     /// Estimates the error of the first grid by a finer one. Returns true if that was the last grid.
-    fn compare(&mut self, (fine, seconds): (Attempt<R>, f64)) -> bool {
+    fn compare(&mut self, fine: Attempt<R>, level: GridLevel) -> bool {
         self.estimate(&fine);
         // The first grid is as far from the finest one, and that from the limit.
         let first = self.own.as_ref().unwrap_or(&self.kept);
         self.estimate = first.sample.errors_from(&fine.sample, &self.estimate);
         self.levels[0].estimate.clone_from(&self.estimate);
-        self.levels.push(GridLevel::new(&fine, seconds));
+        self.levels.push(level);
         self.times *= 2;
         let coarse = std::mem::replace(&mut self.kept, fine);
         self.own.get_or_insert(coarse);
@@ -218,9 +222,8 @@ impl<R> Grids<R> {
     }
 
     /// Keeps a finer grid in place of the one before. Returns true if its error is below the one requested.
-    fn replace(&mut self, (fine, seconds): (Attempt<R>, f64), requested: f64) -> bool {
+    fn replace(&mut self, fine: Attempt<R>, mut level: GridLevel, requested: f64) -> bool {
         self.estimate(&fine);
-        let mut level = GridLevel::new(&fine, seconds);
         level.estimate.clone_from(&self.estimate);
         self.levels.push(level);
         self.iterations += fine.iterations;
@@ -324,18 +327,13 @@ impl ErrorSample {
             places
         };
         let last = discrete.intervals();
-        let kinds = model
-            .system
-            .joints
-            .iter()
-            .filter(|joint| joint.has_coordinate());
-        let joints = motion.joints[last]
-            .iter()
-            .zip(kinds)
-            .map(|(value, joint)| match joint.kind {
-                JointKind::Prismatic { .. } => value / length,
-                _ => *value,
-            });
+        let joints = model.system.joints.iter();
+        let joints = joints.filter(|joint| joint.has_coordinate());
+        let joints = motion.joints[last].iter().zip(joints);
+        let joints = joints.map(|(value, joint)| match joint.kind {
+            JointKind::Prismatic { .. } => value / length,
+            _ => *value,
+        });
         let poses = &motion.poses[last];
         let directors = poses.iter().flat_map(|p| p.directors.iter().copied());
         let centres = poses.iter().flat_map(|p| p.centre.iter());
@@ -428,9 +426,8 @@ struct Difference {
 impl Convergence {
     /// Takes in the next finer grid.
     pub fn add(&mut self, coarse: Option<&ErrorSample>, fine: &ErrorSample) {
-        let mut new = coarse
-            .map(|coarse| coarse.differences(fine))
-            .unwrap_or_default();
+        let new = coarse.map(|coarse| coarse.differences(fine));
+        let mut new = new.unwrap_or_default();
         new.extend(fine.responses().map(|value| (RESPONSE, value)));
         for (name, value) in new {
             let list = self.differences.entry(name).or_default();
@@ -471,28 +468,24 @@ impl Convergence {
             is_real.then(|| (before / last).log2())
         };
         let known = self.differences.iter();
-        known
-            .filter_map(|(&name, list)| Some((name, order(list)?)))
-            .collect()
+        let known = known.filter_map(|(&name, list)| Some((name, order(list)?)));
+        known.collect()
     }
 
     /// Errors left on the finest grid, with `assumed` for an order that is not known.
     pub fn errors(&self, assumed: f64) -> Measures {
-        self.left(assumed, |name, factor| match name {
-            RESPONSE => factor / (factor - 1.0),
-            _ => 1.0 / (factor - 1.0),
-        })
-    }
-
-    /// The last differences times `part` of the factor by which errors fall from grid to grid.
-    fn left(&self, assumed: f64, part: impl Fn(&'static str, f64) -> f64) -> Measures {
         let orders = self.shown(|difference| difference.believed);
-        let error = |(&name, list): (&&'static str, &Vec<Difference>)| {
+        let errors = self.differences.iter().filter_map(|(&name, list)| {
             let order = orders.get(name).copied().unwrap_or(assumed);
+            // By this errors fall from grid to grid.
             let factor = order.clamp(ORDERS[0], ORDERS[1]).exp2();
-            Some((name, list.last()?.believed * part(name, factor)))
-        };
-        self.differences.iter().filter_map(error).collect()
+            let part = match name {
+                RESPONSE => factor / (factor - 1.0),
+                _ => 1.0 / (factor - 1.0),
+            };
+            Some((name, list.last()?.believed * part))
+        });
+        errors.collect()
     }
 }
 

@@ -180,8 +180,7 @@ impl ClosedLoop {
             out.markers.insert(name.clone(), deviations);
         }
         if out.markers.is_empty() {
-            let of = (model, discrete, &open_loop);
-            out.take_joints(of, [&motion, &open], &law);
+            out.take_joints(model, [discrete, &open_loop], [&motion, &open], &law);
         }
         out.open_loop = Some(open);
         out
@@ -211,7 +210,8 @@ impl ClosedLoop {
     /// Takes the coordinates of joints that the law knows.
     fn take_joints(
         &mut self,
-        (model, discrete, without): (&Model, &DiscreteTrajectory, &DiscreteTrajectory),
+        model: &Model,
+        unknowns: [&DiscreteTrajectory; 2],
         motions: [&Trajectory; 2],
         law: &Law,
     ) {
@@ -230,7 +230,7 @@ impl ClosedLoop {
                 let values = [value, reference];
                 Tracked::coordinate(name, measured.is_length, &motion.times, values)
             };
-            let [tracked, open] = [of(discrete, motions[0]), of(without, motions[1])];
+            let [tracked, open] = [0, 1].map(|i| of(unknowns[i], motions[i]));
             let deviations = self.take(tracked, open, motions, law);
             self.joints.insert(name.clone(), deviations);
         }
@@ -238,20 +238,17 @@ impl ClosedLoop {
 
     /// Deviations of what is tracked.
     fn of(&self, tracked: &Tracked) -> &Deviations {
-        let all = if tracked.kind == "marker" {
-            &self.markers
-        } else {
-            &self.joints
-        };
-        &all[&tracked.name]
+        match tracked.kind {
+            "marker" => &self.markers[&tracked.name],
+            _ => &self.joints[&tracked.name],
+        }
     }
 
     /// One line for each marker, or for each joint of a robot without markers.
     pub fn notes(&self) -> Vec<String> {
         let told = |of: &Deviation, tracked: &Tracked| {
-            let held = of.greatest_held;
-            let held = held
-                .map(|held| format!(", {} after the end of the reference", plain(held, tracked)));
+            let held = of.greatest_held.map(|held| plain(held, tracked));
+            let held = held.map(|held| format!(", {held} after the end of the reference"));
             format!(
                 "at most {} from the reference{}, {} at the end",
                 plain(of.greatest, tracked),
@@ -302,13 +299,10 @@ impl ClosedLoop {
     /// That inputs of a controller that plans anew came from elsewhere than from its plan with what was measured.
     pub fn other_sources(&self) -> Option<String> {
         let plans = self.plans.as_ref()?;
-        let others = plans
-            .sources
-            .iter()
-            .filter(|(word, _)| **word != Source::Plan.word());
-        let others: Vec<String> = others
-            .map(|(word, count)| format!("{word:?} in {count}"))
-            .collect();
+        let others = plans.sources.iter();
+        let others = others.filter(|(word, _)| **word != Source::Plan.word());
+        let others = others.map(|(word, count)| format!("{word:?} in {count}"));
+        let others: Vec<String> = others.collect();
         (!others.is_empty()).then(|| {
             format!(
                 "the plan of the controller did not give the inputs of all {} samples: {}",
@@ -353,10 +347,8 @@ fn plain(value: f64, of: &Tracked) -> String {
 /// Length in mm or rad of the path of what is tracked in the motion of the law.
 fn path_length(tracked: &Tracked) -> f64 {
     let step = |k: usize| {
-        let along = tracked
-            .paths
-            .iter()
-            .map(|path| path.reference[k] - path.reference[k - 1]);
+        let along = tracked.paths.iter().map(|path| &path.reference);
+        let along = along.map(|reference| reference[k] - reference[k - 1]);
         along.map(|step| step * step).sum::<f64>().sqrt()
     };
     (1..tracked.deviation.len()).map(step).sum()
@@ -407,7 +399,8 @@ impl LoopLimits {
     /// There is no model of the robot that measures them.
     pub(crate) fn new(
         of: &Ahead,
-        (system, task): (&System, &Simulation),
+        system: &System,
+        task: &Simulation,
         motion: &DiscreteTrajectory,
     ) -> Result<Option<Self>, WorkflowError> {
         let limits = &of.control.limits;

@@ -5,7 +5,7 @@
 
 use crate::control::problem::Control;
 use crate::coordinates::{CoordinateMap, Interval};
-use crate::functional::{Coupling, Functional, Order, Output, Sample, Term, TermKind};
+use crate::functional::{Coupling, Functional, Order, Sample, Term, TermKind};
 use crate::model::{Model, Time, Variable};
 use crate::workflow::reasons;
 use crate::workflow::reasons::{Absent, absent};
@@ -112,7 +112,7 @@ pub fn effect_counts(model: &Model, control: Option<&Control>, spent: f64) -> Ve
     };
     let times = measured_times(model, spent);
     let arguments = arguments(model);
-    let count = |(effect, microseconds): (&dyn Term, f64)| {
+    let counts = each(model).zip(times).map(|(effect, microseconds)| {
         let coupled = Coupled::new(effect, &arguments);
         let count = unknowns.counts(&coupled, &arguments);
         EffectCounts {
@@ -120,8 +120,8 @@ pub fn effect_counts(model: &Model, control: Option<&Control>, spent: f64) -> Ve
             microseconds,
             ..count
         }
-    };
-    each(model).zip(times).map(count).collect()
+    });
+    counts.collect()
 }
 
 /// Unknowns of the matrix.
@@ -268,7 +268,10 @@ pub(crate) fn measured_times(model: &Model, spent: f64) -> Vec<f64> {
         let whole = sum.terms.iter().map(|term| term.elements());
         for (all, part) in whole.zip(timed.terms()) {
             let times_as_many = all as f64 / part.0.elements().max(1) as f64;
-            times.push(1e6 * times_as_many * time(part, sample, &mut output, spent));
+            let (effect, slots) = part;
+            let evaluate =
+                || effect.evaluate(Order::Hessian, black_box(sample), slots, &mut output);
+            times.push(1e6 * times_as_many * time(evaluate, spent));
         }
     }
     times
@@ -292,18 +295,10 @@ fn parts(sum: &Functional) -> Option<Functional> {
 }
 
 /// Time of one evaluation in s.
-fn time(
-    (effect, slots): (&dyn Term, &[u32]),
-    sample: &Sample<'_>,
-    output: &mut Output,
-    spent: f64,
-) -> f64 {
+fn time(mut evaluate: impl FnMut(), spent: f64) -> f64 {
     let mut run = |count: u32| {
         let began = Instant::now();
-        for _ in 0..count {
-            effect.evaluate(Order::Hessian, black_box(sample), slots, output);
-        }
-        black_box(&output);
+        (0..count).for_each(|_| evaluate());
         began.elapsed().as_secs_f64() / f64::from(count)
     };
     let once = run(1);

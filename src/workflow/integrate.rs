@@ -181,15 +181,15 @@ pub fn integrate_on(
         .run(begun, observer),
         None => {
             let lengths = Lengths::Equal(TimeGrid { h, steps });
-            let ended = match &controlled {
+            let solving = task.solving;
+            let (motion, failure) = match &controlled {
                 Some(controlled) => {
-                    let solving = task.solving;
                     let drive = |from: f64, to: f64| controlled.at([from, to], 0.5);
                     go_on(solving, &model, begun, lengths, drive, observer)
                 }
-                None => go_on(task.solving, &model, begun, lengths, drive, observer),
+                None => go_on(solving, &model, begun, lengths, drive, observer),
             };
-            Found::without_error(ended)
+            Found::without_error(motion, failure)
         }
     };
     let seconds = began.elapsed().as_secs_f64() - setup;

@@ -17,12 +17,8 @@ pub fn solved(
     discrete: &DiscreteTrajectory,
     costates: Option<Costates>,
 ) -> Solution {
-    solved_of(
-        model,
-        discrete,
-        Trajectory::from_discrete(model, discrete),
-        costates,
-    )
+    let motion = Trajectory::from_discrete(model, discrete);
+    solved_of(model, discrete, motion, costates)
 }
 
 /// The same of a motion whose poses and joint coordinates are known.
@@ -63,36 +59,29 @@ pub(crate) fn solved_of(
 /// Reference places of the nodes of each block.
 fn meshes(model: &Model) -> BTreeMap<String, Vec<[f64; 3]>> {
     let blocks = model.solids.iter().map(|block| &block.solid);
-    blocks
-        .map(|solid| {
-            let nodes = solid.mesh.nodes.iter().map(|&place| place.into());
-            (solid.name.clone(), nodes.collect())
-        })
-        .collect()
+    let meshes = blocks.map(|solid| {
+        let nodes = solid.mesh.nodes.iter().map(|&place| place.into());
+        (solid.name.clone(), nodes.collect())
+    });
+    meshes.collect()
 }
 
 /// Values of the parameters that a motion was found with; none where none is sought.
 pub(crate) fn parameters(model: &Model, discrete: &DiscreteTrajectory) -> Vec<FoundParameter> {
     let range = model.variables.range(Role::Parameter);
-    let values = discrete
-        .scalars
-        .first()
-        .into_iter()
-        .flat_map(|row| &row[range.clone()]);
+    let values = discrete.scalars.first().into_iter();
+    let values = values.flat_map(|row| &row[range.clone()]);
     let parameters = model.analysis.parameters.iter().zip(values);
-    parameters
-        .map(|(parameter, &value)| parameter.found(value, &model.system))
-        .collect()
+    let found = parameters.map(|(parameter, &value)| parameter.found(value, &model.system));
+    found.collect()
 }
 
 /// The motion as tables and figures show it.
 pub fn trajectory(model: &Model, solved: &Solution) -> Trajectory {
     let shown = |row: &Vec<f64>| {
         let joints = row.iter().zip(&model.system.joints);
-        joints
-            .filter(|(_, joint)| joint.has_coordinate())
-            .map(|(&value, _)| value)
-            .collect()
+        let joints = joints.filter(|(_, joint)| joint.has_coordinate());
+        joints.map(|(&value, _)| value).collect()
     };
     Trajectory {
         times: solved.times.clone(),
@@ -128,17 +117,16 @@ fn potentials(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Vec<f64>> {
 
 /// Voltages and potentials of a motion that is kept, by interval.
 pub(crate) fn scalars(model: &Model, kept: &Solution) -> Vec<Vec<f64>> {
-    let row = |(k, voltages): (usize, &Vec<f64>)| {
+    let rows = kept.voltages.iter().enumerate();
+    let rows = rows.map(|(k, voltages)| {
         let mut row = model.variables.scalars(&model.scalars(voltages));
         let potentials = &mut row[model.variables.range(Role::Potential)];
         let known = kept.potentials.get(k).into_iter().flatten();
-        potentials
-            .iter_mut()
-            .zip(known)
-            .for_each(|(to, from)| *to = *from);
+        let potentials = potentials.iter_mut().zip(known);
+        potentials.for_each(|(to, from)| *to = *from);
         row
-    };
-    kept.voltages.iter().enumerate().map(row).collect()
+    });
+    rows.collect()
 }
 
 /// The record of a motion that is kept.

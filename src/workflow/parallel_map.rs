@@ -39,7 +39,7 @@ pub fn parallel_map<T: Sync, A: Send>(
         Some((index, answered.map_err(|panic| message(&*panic))))
     };
     let mut answers: Vec<Option<Answered<A>>> = items.iter().map(|_| None).collect();
-    let mut keep = |(index, answered): (usize, Answered<A>)| {
+    let mut keep = |index: usize, answered: Answered<A>| {
         told(index, &answered);
         answers[index] = Some(answered);
     };
@@ -61,10 +61,11 @@ pub fn parallel_map<T: Sync, A: Send>(
             }
         }
         drop(sender);
-        receiver.into_iter().for_each(&mut keep);
+        let found = receiver.into_iter();
+        found.for_each(|(index, answered)| keep(index, answered));
     });
     // Where no thread could be had.
-    std::iter::from_fn(take).for_each(keep);
+    std::iter::from_fn(take).for_each(|(index, answered)| keep(index, answered));
     let answers = answers.into_iter();
     answers.map(|one| one.expect("all are taken")).collect()
 }

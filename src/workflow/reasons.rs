@@ -41,16 +41,18 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
     };
     let absent = model.reached.iter().copied();
     let absent = absent.filter(|s| model.variables.input(*s).is_none());
-    let (loads, voltages): (Vec<usize>, Vec<usize>) =
-        absent.partition(|&s| model.sources[s].is_load());
-    let (zero_inputs, cut): (Vec<usize>, Vec<usize>) = voltages
-        .into_iter()
-        .partition(|s| model.analysis.zero_inputs.contains(s));
+    let of = |is_load: bool, is_zero: bool| {
+        let zero_inputs = &model.analysis.zero_inputs;
+        let own = absent
+            .clone()
+            .filter(|&s| model.sources[s].is_load() == is_load);
+        let own = own.filter(|s| is_load || zero_inputs.contains(s) == is_zero);
+        own.collect::<Vec<usize>>()
+    };
+    let [loads, zero_inputs, cut] = [of(true, true), of(false, true), of(false, false)];
     if !loads.is_empty() {
-        let why = format!(
-            "zero all the time, or on what does not move: {}",
-            names(&loads)
-        );
+        let what = "zero all the time, or on what does not move";
+        let why = format!("{what}: {}", names(&loads));
         add("load".to_owned(), why);
     }
     if !zero_inputs.is_empty() {
@@ -67,11 +69,8 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
         add(format!("joint {}", joint.name), why.to_owned());
     }
     for (body, place) in model.system.bodies.iter().zip(&model.presolved.bodies) {
-        let b = model
-            .system
-            .bodies
-            .iter()
-            .position(|other| other.name == body.name);
+        let mut bodies = model.system.bodies.iter();
+        let b = bodies.position(|other| other.name == body.name);
         let is_immobile = b.is_some_and(|b| model.presolved.immobile.bodies[b]);
         let why = match place {
             BodyLocation::Body(_) => continue,
@@ -80,10 +79,8 @@ pub fn absent(model: &Model, control: Option<&Control>) -> Vec<Absent> {
             }
             BodyLocation::Ground => "it is fixed to the ground".to_owned(),
             BodyLocation::Welded { to, .. } => {
-                format!(
-                    "it is one body with {}",
-                    model.presolved.system.bodies[*to].name
-                )
+                let name = &model.presolved.system.bodies[*to].name;
+                format!("it is one body with {name}")
             }
         };
         add(format!("body {}", body.name), why);
@@ -111,10 +108,8 @@ fn absent_of_control(model: &Model, control: &Control, add: &mut impl FnMut(Stri
         add(name, "the problem gives it".to_owned());
     }
     if let Duration::Given(_) = control.duration {
-        add(
-            "unknown duration".to_owned(),
-            "the problem gives it".to_owned(),
-        );
+        let why = "the problem gives it".to_owned();
+        add("unknown duration".to_owned(), why);
     }
     let weights = [
         ("cost of effort", control.objective.effort),
@@ -124,14 +119,12 @@ fn absent_of_control(model: &Model, control: &Control, add: &mut impl FnMut(Stri
     let energy = |energy: SourceEnergy| {
         let costs = control.objective.energies.iter();
         let own = costs.filter(|cost| cost.energy == energy);
-        own.map(|cost| cost.weight).sum()
+        own.map(|cost| cost.weight).sum::<f64>()
     };
+    let [electrical, mechanical] = [SourceEnergy::Electrical, SourceEnergy::Mechanical].map(energy);
     let weights = weights.into_iter().chain([
-        (
-            "cost of electrical energy",
-            energy(SourceEnergy::Electrical),
-        ),
-        ("cost of mechanical work", energy(SourceEnergy::Mechanical)),
+        ("cost of electrical energy", electrical),
+        ("cost of mechanical work", mechanical),
     ]);
     for (name, _) in weights.filter(|(_, weight)| *weight == 0.0) {
         add(name.to_owned(), "the objective names no weight".to_owned());

@@ -56,9 +56,7 @@ pub(crate) struct Found {
 
 impl Found {
     /// A motion whose error nothing asks for.
-    pub(crate) fn without_error(
-        (discrete, failure): (DiscreteTrajectory, Option<StepError>),
-    ) -> Self {
+    pub(crate) fn without_error(discrete: DiscreteTrajectory, failure: Option<StepError>) -> Self {
         Self {
             discrete,
             failure,
@@ -77,8 +75,8 @@ impl ByTolerance<'_> {
     ) -> Found {
         let Self { control, .. } = *self;
         let start = at_start(&begun);
-        let mut found =
-            self.assessed(self.go_on(begun, Lengths::Controlled(control), &mut observer));
+        let (motion, failure) = self.go_on(begun, Lengths::Controlled(control), &mut observer);
+        let mut found = self.assessed(motion, failure);
         for _ in 0..AGAIN {
             let Some(error) = found.error.filter(|_| found.stopped.is_none()) else {
                 return found;
@@ -93,19 +91,19 @@ impl ByTolerance<'_> {
             let mut again = start.clone();
             let used = found.discrete.end.tolerance.unwrap_or(control.tolerance);
             again.end.tolerance = Some(used * factor);
-            let tighter = self.go_on(again, Lengths::Controlled(control), &mut observer);
-            let is_whole = tighter.0.times.last() == found.discrete.times.last();
+            let (tighter, failure) = self.go_on(again, Lengths::Controlled(control), &mut observer);
+            let is_whole = tighter.times.last() == found.discrete.times.last();
             if !is_whole && stop::reason().is_none() {
                 // Steps that short fail: the motion before is the best there is.
                 return found;
             }
-            found = self.assessed(tighter);
+            found = self.assessed(tighter, failure);
         }
         found
     }
 
     /// A motion with its error; a stop leaves the error unknown where it is not confirmed before.
-    fn assessed(&self, (discrete, failure): (DiscreteTrajectory, Option<StepError>)) -> Found {
+    fn assessed(&self, discrete: DiscreteTrajectory, failure: Option<StepError>) -> Found {
         let error = match failure {
             None => self.error(&discrete),
             Some(_) => None,
@@ -158,10 +156,8 @@ impl ByTolerance<'_> {
         }
         let in_pairs = self.repeated(discrete, &in_two)?;
         let in_fours = self.repeated(discrete, &in_four)?;
-        let among: Vec<usize> = fours
-            .iter()
-            .filter_map(|k| pairs.binary_search(k).ok())
-            .collect();
+        let among = fours.iter().filter_map(|k| pairs.binary_search(k).ok());
+        let among: Vec<usize> = among.collect();
         let before = self.apart(&in_pairs, &among, &in_fours);
         let last = self.apart(discrete, &pairs, &in_pairs);
         let error = EstimatedError::of_finest(before, last);
@@ -189,22 +185,18 @@ impl ByTolerance<'_> {
     /// Every other of some instants of a motion, those at which voltages may switch included.
     fn pairs(&self, discrete: &DiscreteTrajectory, places: &[usize]) -> Vec<usize> {
         let switches = self.control.switches;
-        let is_end = |&&place: &&usize| {
+        let is_end = |place: usize| {
             place == 0
                 || place + 1 == discrete.times.len()
                 || switches.contains(&discrete.times[place])
         };
-        let mut kept = Vec::new();
-        let mut since = 0;
-        for place in places {
-            if is_end(&place) || since == 1 {
-                kept.push(*place);
-                since = 0;
-            } else {
-                since += 1;
-            }
-        }
-        kept
+        let mut is_second = false;
+        let is_kept = |&place: &usize| {
+            let is_kept = is_end(place) || is_second;
+            is_second = !is_kept;
+            is_kept
+        };
+        places.iter().copied().filter(is_kept).collect()
     }
 
     fn repeated(&self, discrete: &DiscreteTrajectory, times: &[f64]) -> Option<DiscreteTrajectory> {
@@ -225,9 +217,8 @@ impl ByTolerance<'_> {
         let coarse = solved_of(model, coarse, of_coarse, None);
         let each = places.iter().enumerate();
         let distances = each.map(|(k, &place)| Distance::between(model, &fine, place, &coarse, k));
-        let size = distances
-            .fold(Distance::default(), Distance::max)
-            .size(model);
+        let greatest = distances.fold(Distance::default(), Distance::max);
+        let size = greatest.size(model);
         Apart { size, place }
     }
 }
@@ -277,9 +268,8 @@ fn at_start(discrete: &DiscreteTrajectory) -> DiscreteTrajectory {
 fn are_doubled(finer: &[f64], coarser: &[f64]) -> bool {
     let is_alone = |ends: &&[f64]| {
         let first = finer.partition_point(|&time| time < ends[0]);
-        let parts = finer[first..]
-            .windows(2)
-            .take_while(|part| part[0] < ends[1]);
+        let parts = finer[first..].windows(2);
+        let parts = parts.take_while(|part| part[0] < ends[1]);
         let longest = parts.map(|part| part[1] - part[0]).fold(0.0, f64::max);
         longest > LARGEST_PART * (ends[1] - ends[0])
     };
@@ -292,9 +282,8 @@ fn are_doubled(finer: &[f64], coarser: &[f64]) -> bool {
 /// Times with one in the middle of each two.
 pub(super) fn halved(times: &[f64]) -> Vec<f64> {
     let first = times.first().copied();
-    let others = times
-        .windows(2)
-        .flat_map(|ends| [0.5 * (ends[0] + ends[1]), ends[1]]);
+    let others = times.windows(2);
+    let others = others.flat_map(|ends| [0.5 * (ends[0] + ends[1]), ends[1]]);
     first.into_iter().chain(others).collect()
 }
 

@@ -208,11 +208,11 @@ pub(crate) fn path(
     let CostFunction::Square { reference } = &cost.function else {
         return None;
     };
-    let (name, axis, value): (String, Option<usize>, Vec<f64>) = match cost.quantity.what {
+    let (name, axis, value) = match cost.quantity.what {
         What::Place { marker, axis } => {
             let name = format!("{}_{}", system.markers[marker].name, ["x", "y", "z"][axis]);
             let marks = motion.marks.iter().map(|places| places[marker][axis]);
-            (name, Some(axis), marks.collect())
+            (name, Some(axis), marks.collect::<Vec<f64>>())
         }
         What::Joint { joint, .. } if !cost.quantity.is_step() => {
             let before = system.joints[..joint].iter();
@@ -282,27 +282,29 @@ pub struct FinalValue {
 pub(crate) fn final_values(
     optimum: &Optimum,
     control: &Control,
-    motion: (&Trajectory, &DiscreteTrajectory),
+    motion: &Trajectory,
+    discrete: &DiscreteTrajectory,
 ) -> [Vec<FinalValue>; 2] {
-    let (mut on_the_way, mut at_end) = (Vec::new(), Vec::new());
+    let mut found = [Vec::new(), Vec::new()];
     for (index, cost) in control.objective.quantities.iter().enumerate() {
-        match cost.during {
-            During::Motion => {}
-            During::At(part) => {
-                let k = instant_at(part, motion.0.intervals());
-                on_the_way.extend(value(optimum, (index, cost), motion, Some(k)));
-            }
-            During::End => at_end.extend(value(optimum, (index, cost), motion, None)),
-        }
+        let waypoint = match cost.during {
+            During::Motion => continue,
+            During::At(part) => Some(instant_at(part, motion.intervals())),
+            During::End => None,
+        };
+        let value = value(optimum, index, cost, motion, discrete, waypoint);
+        found[usize::from(waypoint.is_none())].extend(value);
     }
-    [on_the_way, at_end]
+    found
 }
 
 /// The value of a cost at the instant of a waypoint, or at the end.
 fn value(
     optimum: &Optimum,
-    (index, cost): (usize, &QuantityCost),
-    (motion, discrete): (&Trajectory, &DiscreteTrajectory),
+    index: usize,
+    cost: &QuantityCost,
+    motion: &Trajectory,
+    discrete: &DiscreteTrajectory,
     waypoint: Option<usize>,
 ) -> Option<FinalValue> {
     let system = &optimum.model.system;

@@ -6,6 +6,7 @@ use proboscis::model::System;
 use proboscis::tasks::{SolveRequest, solve};
 use proboscis::workflow::Iterate;
 use proboscis::workflow::receding::Horizon;
+use proboscis::workflow::regulator::Along;
 use std::ops::ControlFlow;
 use std::path::Path;
 
@@ -27,9 +28,6 @@ pub fn horizon((system, control): &(System, Control), task: &Regulator, n: usize
     let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
     let found = solve(system, control, SolveRequest::default(), go_on).unwrap();
     assert!(found.verdict.is_solved);
-    let optimum = &found.optimum;
-    let rest = optimum.boundary.rest[1].as_deref();
-    let momentum = &optimum.boundary.start.momentum;
-    let of = (&optimum.model, &found.discrete);
-    Horizon::new((system, control, task), n, of, (momentum, rest)).unwrap()
+    let along = Along::new(&found.optimum, &found.discrete, control);
+    Horizon::new(system, along, task, n).unwrap()
 }

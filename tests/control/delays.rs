@@ -8,7 +8,7 @@ use proboscis::model::Model;
 use proboscis::stop::{self, Questions};
 use proboscis::tasks::{SolveRequest, solve};
 use proboscis::workflow::Iterate;
-use proboscis::workflow::regulator::{NoRegulator, regulator};
+use proboscis::workflow::regulator::{Along, NoRegulator, regulator};
 use std::ops::ControlFlow;
 
 /// Deviations in rad of the joint from the goal in intervals behind the end of the motion, and the greatest before.
@@ -45,17 +45,14 @@ fn the_end_of_the_motion_is_predicted_over_a_delay() {
     let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
     let found = solve(&system, &control, SolveRequest::default(), go_on).unwrap();
     assert!(found.verdict.is_solved);
-    let optimum = &found.optimum;
     let law = |delay: f64| {
         let task = Regulator {
             step: 4.0,
             delay,
             ..Regulator::default()
         };
-        let of = (&optimum.model, &control, &task);
-        let rest = optimum.boundary.rest[1].as_deref();
-        let momentum = &optimum.boundary.start.momentum;
-        regulator(of, &found.discrete, momentum, rest).unwrap().law
+        let along = Along::new(&found.optimum, &found.discrete, &control);
+        regulator(along, &task).unwrap().law
     };
     let (at_once, late) = (law(0.0), law(40.0));
     assert_eq!(late.delay, 2);
@@ -85,15 +82,11 @@ fn a_stop_among_the_gains_is_no_singular_step() {
     let (system, control) = problem("pair.json", &["control.intervals=4"]);
     let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
     let found = solve(&system, &control, SolveRequest::default(), go_on).unwrap();
-    let optimum = &found.optimum;
     let run = |allowed: u64| {
         let questions = Questions::allowed(allowed);
         let _watch = stop::watch_questions(&questions);
         let task = Regulator::default();
-        let rest = optimum.boundary.rest[1].as_deref();
-        let momentum = &optimum.boundary.start.momentum;
-        let of = (&optimum.model, &control, &task);
-        let found = regulator(of, &found.discrete, momentum, rest);
+        let found = regulator(Along::new(&found.optimum, &found.discrete, &control), &task);
         (found.map(|found| found.held.is_some()), questions.asked())
     };
     let (whole, asked) = run(u64::MAX >> 1);

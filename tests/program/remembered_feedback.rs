@@ -10,7 +10,7 @@ use proboscis::files::read_problem;
 use proboscis::math::Random;
 use proboscis::tasks::{SolveRequest, solve};
 use proboscis::workflow::Iterate;
-use proboscis::workflow::regulator::regulator;
+use proboscis::workflow::regulator::{Along, regulator};
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -98,15 +98,8 @@ fn charges_and_viscous_stretches_have_their_si_units() {
     let task = read_problem(&path, &set.map(str::to_owned))
         .unwrap()
         .feedback;
-    let optimum = &found.optimum;
-    let boundary = &optimum.boundary;
-    let own = regulator(
-        (&optimum.model, &control, &task.unwrap()),
-        &found.discrete,
-        &boundary.start.momentum,
-        boundary.rest[1].as_deref(),
-    );
-    let own = own.unwrap().law;
+    let along = Along::new(&found.optimum, &found.discrete, &control);
+    let own = regulator(along, &task.unwrap()).unwrap().law;
     let law = format!("simulate.controller.feedback={:?}", here.join("kept"));
     let path = here.join("problems/pair_closed_loop.json");
     let Task::Simulate(task) = read_problem(&path, &[law]).unwrap().task else {

@@ -18,7 +18,7 @@ use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::SolveLimits;
 use crate::workflow::receding::layout::{Reference, Steered};
 use crate::workflow::receding::program::Program;
-use crate::workflow::regulator::{NOTHING_HOLDS, NoRegulator, predicting, rate_weight};
+use crate::workflow::regulator::{Along, NOTHING_HOLDS, NoRegulator, predicting, rate_weight};
 use std::ops::ControlFlow;
 use thiserror::Error;
 
@@ -43,8 +43,8 @@ pub struct Horizon {
 }
 
 impl Horizon {
-    /// Creates the horizon of a reference motion, with a number of intervals as long as those of the motion. `momentum`: initial momentum; `rest`:
-    /// voltages that hold the goal, by source. Integrals are not offered: constant disturbances of an observer do their work.
+    /// Creates the horizon of a reference motion of a system, with a number of intervals as long as those of the motion. Integrals are not offered:
+    /// constant disturbances of an observer do their work.
     ///
     /// # Errors
     /// There is none.
@@ -52,17 +52,18 @@ impl Horizon {
     /// # Panics
     /// If there is no interval.
     pub fn new(
-        (system, control, task): (&System, &Control, &Regulator),
+        system: &System,
+        along: Along<'_>,
+        task: &Regulator,
         intervals: usize,
-        (model, discrete): (&Model, &DiscreteTrajectory),
-        (momentum, rest): (&[f64], Option<&[f64]>),
     ) -> Result<Self, NoHorizon> {
         assert!(intervals > 0, "an interval or more");
-        offered(model, control)?;
+        let Along { control, rest, .. } = along;
+        offered(along.model, control)?;
         if task.integral > 0.0 {
             return Err(NoHorizon::NotOffered(INTEGRAL));
         }
-        let found = predicting(model, control, task, discrete, momentum, rest);
+        let found = predicting(along, task);
         let found = found.map_err(NoHorizon::Regulator)?;
         let not_held = || {
             let reason = found.not_held.clone();
@@ -85,9 +86,7 @@ impl Horizon {
             source.is_some_and(|source| !control.is_given(source))
         });
         let inputs = squared.zip(&found.law.inputs);
-        let inputs = inputs
-            .map(|(input, of)| (input.scalar, of.is_squared))
-            .collect();
+        let inputs = inputs.map(|(input, of)| (input.scalar, of.is_squared));
         let state = |error: NoState| NoHorizon::Regulator(NoRegulator::State(error));
         let linearisation = Linearisation::new(&model, &[]).map_err(state)?;
         let coordinates = linearisation.coordinates().to_vec();
@@ -105,7 +104,7 @@ impl Horizon {
             forced: forced(&model, &coordinates, &found.law),
             coordinates,
             inert,
-            inputs,
+            inputs: inputs.collect(),
             parts,
             h: h / parts as f64,
         };
@@ -153,16 +152,8 @@ impl Horizon {
             return Err(NoHorizon::Unsolved(format!("no optimum was found: {word}")));
         }
         let discrete = discrete_trajectory(&optimum.model, &optimum.motion);
-        let momentum = &optimum.boundary.start.momentum;
-        let rest = optimum.motion.hold.as_deref();
-        let rest = rest.or(optimum.boundary.rest[1].as_deref());
-        let of = (&optimum.model, &discrete);
-        Self::new(
-            (system, control, regulator),
-            *intervals,
-            of,
-            (momentum, rest),
-        )
+        let along = Along::new(&optimum, &discrete, control);
+        Self::new(system, along, regulator, *intervals)
     }
 
     /// The law to which controllers fall back: names of all that is measured and of the inputs, bounds, length of the intervals.
@@ -212,11 +203,8 @@ impl Horizon {
 
     /// True of the inputs that act by their squares.
     pub(super) fn squared(&self) -> Vec<bool> {
-        self.law
-            .inputs
-            .iter()
-            .map(|input| input.is_squared)
-            .collect()
+        let inputs = self.law.inputs.iter();
+        inputs.map(|input| input.is_squared).collect()
     }
 
     pub(super) fn model(&self) -> &Model {

@@ -91,18 +91,16 @@ impl<'m> Layout<'m> {
         let squares = motion.squares();
         let mut ones = vec![1.0; own.len()];
         Squares::of(motion, squares.clone()).square(&mut ones);
-        let instants = 0..=intervals;
-        let coordinate = |(k, i): (usize, usize)| {
+        let coordinate = |k: usize, i: usize| {
             let column = unknowns.unknown(k * parts, i).expect("an open coordinate");
             (own[column], motion.column_scale(column))
         };
         let row = |k: usize, c: usize| {
-            let row = unknowns
-                .row(k * parts, steered.coordinates[c])
-                .expect("a balance");
+            let row = unknowns.row(k * parts, steered.coordinates[c]);
+            let row = row.expect("a balance");
             (row, motion.row_scale(row))
         };
-        let input = |k: usize, (s, is_squared): (usize, bool)| {
+        let input = |k: usize, s: usize, is_squared: bool| {
             let column = unknowns.scalar(k * parts, s).expect("a sought input");
             let scale = motion.column_scale(column);
             let is_square = squares.contains(&column);
@@ -118,29 +116,33 @@ impl<'m> Layout<'m> {
             }
         };
         let last = intervals * parts;
-        let force = |k: usize, (force, &i): (usize, &usize)| {
-            let row = unknowns.row(k, i).expect("a balance");
-            // Half of it acts before an instant, and half behind.
-            let time = if k == 0 || k == last { 0.5 * h } else { h };
-            (row, motion.row_scale(row) * time, force)
-        };
-        let steps = 0..=last;
-        Self {
-            forced: steps
-                .flat_map(|k| steered.forced.iter().enumerate().map(move |one| (k, one)))
-                .map(|(k, one)| force(k, one))
-                .collect(),
+        let mut out = Self {
+            forced: Vec::new(),
             steered,
             intervals,
-            coordinates: instants
-                .flat_map(|k| steered.coordinates.iter().map(move |&i| (k, i)))
-                .map(coordinate)
-                .collect(),
+            coordinates: Vec::new(),
             momenta: [0, intervals].map(|k| steered.inert.iter().map(|&c| row(k, c)).collect()),
-            driven: (0..intervals)
-                .map(|k| steered.inputs.iter().map(|&one| input(k, one)).collect())
-                .collect(),
+            driven: Vec::new(),
+        };
+        for k in 0..=last {
+            // Half of a force acts before an instant, and half behind.
+            let time = if k == 0 || k == last { 0.5 * h } else { h };
+            for (force, &i) in steered.forced.iter().enumerate() {
+                let row = unknowns.row(k, i).expect("a balance");
+                out.forced.push((row, motion.row_scale(row) * time, force));
+            }
         }
+        for k in 0..=intervals {
+            let coordinates = steered.coordinates.iter();
+            out.coordinates
+                .extend(coordinates.map(|&i| coordinate(k, i)));
+        }
+        for k in 0..intervals {
+            let inputs = steered.inputs.iter();
+            let inputs = inputs.map(|&(s, is_squared)| input(k, s, is_squared));
+            out.driven.push(inputs.collect());
+        }
+        out
     }
 
     /// Number of coordinates of the state.
@@ -173,7 +175,7 @@ pub(super) fn held_over_parts(
     inputs: &[usize],
     parts: usize,
 ) -> (Vec<usize>, Vec<Column>) {
-    let (mut own, mut first): (Vec<usize>, Vec<Column>) = Default::default();
+    let (mut own, mut first) = (Vec::new(), Vec::new());
     let mut numbers = FxHashMap::default();
     for &column in columns {
         let same = match column {

@@ -163,14 +163,12 @@ impl<'m> Program<'m> {
 
     /// Inputs of the first interval: V, N, N mm.
     pub(super) fn first_inputs(&self, x: &[f64], out: &mut [f64], is_squared: &[bool]) {
-        for ((value, input), is_squared) in
-            out.iter_mut().zip(&self.layout.driven[0]).zip(is_squared)
-        {
+        let inputs = self.layout.driven[0].iter().zip(is_squared);
+        for (value, (input, is_squared)) in out.iter_mut().zip(inputs) {
             let [acting, ..] = input.reading(x[input.column]);
-            *value = if *is_squared {
-                acting.max(0.0).sqrt()
-            } else {
-                acting
+            *value = match is_squared {
+                true => acting.max(0.0).sqrt(),
+                false => acting,
             };
         }
     }
@@ -459,9 +457,11 @@ impl Program<'_> {
 
 /// dᵀ M d.
 fn square(d: &[f64], of: &nalgebra::DMatrix<f64>) -> f64 {
-    let row = |(a, value): (usize, &f64)| {
-        let row = d.iter().enumerate().map(|(b, other)| of[(a, b)] * other);
-        value * row.sum::<f64>()
+    let row = |a: usize| {
+        d.iter()
+            .enumerate()
+            .map(move |(b, other)| of[(a, b)] * other)
     };
-    d.iter().enumerate().map(row).sum()
+    let rows = d.iter().enumerate();
+    rows.map(|(a, value)| value * row(a).sum::<f64>()).sum()
 }

@@ -5,7 +5,7 @@
 //! At the end of an optimum bodies rest, and what muscles remember may go on: branches of rubber relax long after. Inputs that hold the goal lead to the
 //! state in which a step changes nothing, `f(x) = x`, which Newton's method finds from the end with the linearised step A: `(1 − A) δx = f(x) − x`.
 
-use crate::control::problem::{Control, Regulator};
+use crate::control::problem::Regulator;
 use crate::dynamics::{
     DiscreteTrajectory, LinearStep, Linearisation, StepError, StepInput, Stepper,
     momentum_derivatives, rates_of_momentum, step_inputs,
@@ -13,6 +13,7 @@ use crate::dynamics::{
 use crate::feedback::Costs;
 use crate::math::Vector;
 use crate::model::{Model, Time};
+use crate::workflow::regulator::Along;
 use crate::workflow::regulator::regulated::{MOST, NoRegulator, RegulatedStep};
 use nalgebra::{DMatrix, DVector};
 
@@ -28,6 +29,9 @@ pub(super) struct Design<'a> {
     pub(super) model: &'a Model,
     pub(super) task: &'a Regulator,
     pub(super) discrete: &'a DiscreteTrajectory,
+    momentum: &'a [f64],
+    /// Voltages that hold the goal, by source.
+    pub(super) rest: Option<&'a [f64]>,
     pub(super) inputs: Vec<StepInput>,
     pub(super) bounds: Vec<[f64; 2]>,
     /// Range of each input, or of its square.
@@ -46,22 +50,23 @@ pub(super) struct Design<'a> {
 }
 
 impl<'a> Design<'a> {
-    pub(super) fn new(
-        model: &'a Model,
-        control: &Control,
-        task: &'a Regulator,
-        (discrete, rest): (&'a DiscreteTrajectory, Option<&[f64]>),
-    ) -> Result<Self, NoRegulator> {
+    pub(super) fn new(along: Along<'a>, task: &'a Regulator) -> Result<Self, NoRegulator> {
+        let Along {
+            model,
+            control,
+            discrete,
+            momentum,
+            rest,
+        } = along;
         let scalars = model.variables.of(Time::Interval);
         let mut inputs = step_inputs(model);
         inputs.retain(|input| {
             let source = scalars[input.scalar].source;
             source.is_some_and(|source| !control.is_given(source))
         });
-        let bounds: Vec<[f64; 2]> = inputs
-            .iter()
-            .map(|input| control.bounds(&scalars[input.scalar]))
-            .collect();
+        let bounds = inputs.iter();
+        let bounds = bounds.map(|input| control.bounds(&scalars[input.scalar]));
+        let bounds: Vec<[f64; 2]> = bounds.collect();
         let mut ranges = Vec::new();
         for (input, [low, high]) in inputs.iter_mut().zip(&bounds) {
             input.is_squared &= *low >= 0.0 && high.is_finite();
@@ -97,6 +102,8 @@ impl<'a> Design<'a> {
             model,
             task,
             discrete,
+            momentum,
+            rest,
             bounds,
             ranges,
             momenta: linearisation.momenta().to_vec(),
@@ -119,11 +126,11 @@ impl<'a> Design<'a> {
         Ok(out)
     }
 
-    /// The motion from a momentum under the inputs of the optimum, in short steps: its states at the instants.
-    pub(super) fn motion(&self, momentum: &[f64]) -> Result<Vec<State>, NoRegulator> {
+    /// The motion under the inputs of the optimum, in short steps: its states at the instants.
+    pub(super) fn motion(&self) -> Result<Vec<State>, NoRegulator> {
         let mut states = vec![State {
             z: self.discrete.z[0].clone(),
-            momentum: momentum.to_vec(),
+            momentum: self.momentum.to_vec(),
         }];
         for scalars in &self.discrete.scalars {
             let inputs = self.model.variables.split(scalars)[0];
@@ -205,12 +212,7 @@ impl<'a> Design<'a> {
     ) -> RegulatedStep {
         let (n, u) = (step.by_state.nrows(), self.inputs.len());
         let size = n + self.integrated.len();
-        let mut by_state = DMatrix::identity(size, size);
-        by_state.view_mut((0, 0), (n, n)).copy_from(&step.by_state);
-        let mut by_inputs = DMatrix::zeros(size, u);
-        by_inputs
-            .view_mut((0, 0), (n, u))
-            .copy_from(&step.by_inputs);
+        let mut by_state = with_ones(&step.by_state, size);
         for (i, &place) in self.integrated.iter().enumerate() {
             by_state[(n + i, place)] = self.h;
         }
@@ -218,7 +220,7 @@ impl<'a> Design<'a> {
         let coordinates = self.coordinates.len();
         RegulatedStep {
             by_state,
-            by_inputs,
+            by_inputs: step.by_inputs.clone().resize_vertically(size, 0.0),
             rates: self.rate_weights(size),
             costs: Costs {
                 state: self.state_costs(at),
@@ -319,6 +321,13 @@ impl<'a> Design<'a> {
                 .select_columns(&self.coordinates),
         ]
     }
+}
+
+/// A matrix in the corner of a unit matrix of a size.
+pub(super) fn with_ones(of: &DMatrix<f64>, size: usize) -> DMatrix<f64> {
+    let mut out = DMatrix::identity(size, size);
+    out.view_mut((0, 0), of.shape()).copy_from(of);
+    out
 }
 
 /// Deviation of a coordinate that costs as much as one of a mm.

@@ -18,7 +18,7 @@ use crate::feedback::{
     Forced, HeldGain, Integral, Lasting, Law, LawInput, Measured, Memory, Point,
 };
 use crate::model::{Model, Time};
-use crate::workflow::regulator::design::{Design, State};
+use crate::workflow::regulator::design::{Design, State, with_ones};
 use crate::workflow::regulator::regulated::{NoRegulator, RegulatedStep};
 use nalgebra::{DMatrix, DVector};
 
@@ -33,7 +33,7 @@ impl Design<'_> {
         &self,
         steps: &[RegulatedStep],
         motion: &[State],
-        (rest, held): (Option<&[f64]>, Option<&(RegulatedStep, HeldGain)>),
+        held: Option<&(RegulatedStep, HeldGain)>,
     ) -> Law {
         let scalars = self.model.variables.of(Time::Interval);
         let coordinate = |&i: &usize, is_rate: bool| Measured {
@@ -50,20 +50,12 @@ impl Design<'_> {
             all.map(|input| scalars[input.scalar]).collect()
         };
         let delay = self.task.delayed(self.h);
-        let wide = |step: &RegulatedStep| widened(step);
-        let all: Vec<RegulatedStep>;
-        let steps = match self.forced.is_empty() {
-            true => steps,
-            false => {
-                all = steps.iter().map(wide).collect();
-                &all
-            }
-        };
+        let steps: Vec<RegulatedStep> = steps.iter().map(widened).collect();
         let at_goal = held.map(|(step, _)| widened(step));
         let last = at_goal.as_ref().or(steps.last()).expect("a step");
         let ahead = |k: usize| steps.get(k).unwrap_or(last);
         let is_held = held.is_some();
-        let points = steps.iter().enumerate().map(|(k, _)| {
+        let points = (0..steps.len()).map(|k| {
             let inputs = given(&self.discrete.scalars[k]);
             let gain = predicted((k..k + delay).map(ahead), ahead(k + delay));
             let offset = match (k + delay).checked_sub(steps.len()) {
@@ -75,7 +67,7 @@ impl Design<'_> {
                 ..self.point(&motion[k], &gain, inputs)
             }
         });
-        let held = rest.zip(at_goal.as_ref()).map(|(rest, step)| {
+        let held = self.rest.zip(at_goal.as_ref()).map(|(rest, step)| {
             let inputs = given(&self.model.scalars(rest));
             let gain = predicted((0..delay).map(|_| step), step);
             self.point(self.goal(), &gain, inputs)
@@ -104,11 +96,8 @@ impl Design<'_> {
     /// The correction some intervals behind the end of a motion that ends beside its goal, by the step that is held there.
     fn offset(&self, motion: &[State], behind: usize, held: &RegulatedStep) -> Vec<f64> {
         let (end, goal) = (motion.last().expect("an instant"), self.goal());
-        let coordinates = self.coordinates.iter().map(|&i| end.z[i] - goal.z[i]);
-        let momenta = self.momenta.iter();
-        let momenta = momenta.map(|&i| end.momentum[i] - goal.momentum[i]);
         let mut state = DVector::zeros(held.by_state.nrows());
-        let places = state.iter_mut().zip(coordinates.chain(momenta));
+        let places = state.iter_mut().zip(self.change([goal, end]));
         places.for_each(|(to, value)| *to = value);
         for _ in 0..behind {
             state = &held.by_state * state;
@@ -124,21 +113,20 @@ impl Design<'_> {
         let motion = motion[..motion.len() - usize::from(is_held)].iter();
         let instants: Vec<_> = motion.chain(goal).map(|at| map.placed(&at.z)).collect();
         let moving = self.model.moving_markers().into_iter();
-        let path = |(marker, vector): (usize, usize)| {
+        let paths = moving.map(|(marker, vector)| {
             let name = self.model.system.markers[marker].name.clone();
             let places = instants.iter().map(|instant| instant.x[vector].into());
             (name, places.collect())
-        };
-        moving.map(path).collect()
+        });
+        paths.collect()
     }
 
     /// Coordinates and rates of a state.
     pub(super) fn measured(&self, State { z, momentum }: &State) -> Vec<f64> {
         let rates = rates_of_momentum(self.model, z, 0.0, momentum);
         let coordinates = self.coordinates.iter().map(|&i| z[i]);
-        coordinates
-            .chain(self.momenta.iter().map(|&i| rates[i]))
-            .collect()
+        let rates = self.momenta.iter().map(|&i| rates[i]);
+        coordinates.chain(rates).collect()
     }
 
     /// A point of the law, whose gain reads rates in place of momenta.
@@ -283,10 +271,9 @@ fn gain(step: &RegulatedStep, rest: &DMatrix<f64>, further: Option<&DMatrix<f64>
 }
 
 fn side_by_side(left: &DMatrix<f64>, right: &DMatrix<f64>) -> DMatrix<f64> {
-    let mut out = DMatrix::zeros(left.nrows(), left.ncols() + right.ncols());
-    out.columns_mut(0, left.ncols()).copy_from(left);
-    out.columns_mut(left.ncols(), right.ncols())
-        .copy_from(right);
+    let (own, more) = (left.ncols(), right.ncols());
+    let mut out = left.clone().resize_horizontally(own + more, 0.0);
+    out.columns_mut(own, more).copy_from(right);
     out
 }
 
@@ -297,16 +284,12 @@ pub(super) fn widened(step: &RegulatedStep) -> RegulatedStep {
     };
     let (n, forces) = (step.by_state.nrows(), step.by_forces.ncols());
     let size = n + over_forces.ncols();
-    let mut by_state = DMatrix::identity(size, size);
-    by_state.view_mut((0, 0), (n, n)).copy_from(&step.by_state);
-    by_state
-        .view_mut((0, n), (n, forces))
-        .copy_from(&step.by_forces);
-    let mut by_inputs = DMatrix::zeros(size, step.by_inputs.ncols());
-    by_inputs.rows_mut(0, n).copy_from(&step.by_inputs);
+    let mut by_state = with_ones(&step.by_state, size);
+    let mut of_forces = by_state.view_mut((0, n), (n, forces));
+    of_forces.copy_from(&step.by_forces);
     RegulatedStep {
         by_state,
-        by_inputs,
+        by_inputs: step.by_inputs.clone().resize_vertically(size, 0.0),
         gain: side_by_side(&step.gain, over_forces),
         ..step.clone()
     }

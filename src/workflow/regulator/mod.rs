@@ -12,6 +12,7 @@ use crate::dynamics::{DiscreteTrajectory, Linearisation};
 use crate::feedback::{Costs, HeldGain, NotHeld, spectral_radius};
 use crate::model::Model;
 use crate::stop;
+use crate::workflow::optimum::Optimum;
 use crate::workflow::regulator::design::Design;
 use crate::workflow::regulator::law::Against;
 use crate::workflow::regulator::observer::reproduced;
@@ -23,18 +24,45 @@ pub use regulated::{
     NoRegulator, Regulated, RegulatedStep, RegulatorReport, Reproduced, WholeCosts,
 };
 
-/// The regulator of a motion with a momentum at its start, whose goal is held by `rest` voltages, by source, where it is.
+/// An optimal motion along which feedback is designed.
+#[derive(Clone, Copy, Debug)]
+pub struct Along<'a> {
+    /// The model that moves.
+    pub model: &'a Model,
+    /// The problem that the motion solves.
+    pub control: &'a Control,
+    /// The motion as unknowns of the model.
+    pub discrete: &'a DiscreteTrajectory,
+    /// The momentum at its start.
+    pub momentum: &'a [f64],
+    /// Voltages that hold its goal, by source, where it is held.
+    pub rest: Option<&'a [f64]>,
+}
+
+impl<'a> Along<'a> {
+    /// An optimum of a problem.
+    pub fn new(
+        optimum: &'a Optimum,
+        discrete: &'a DiscreteTrajectory,
+        control: &'a Control,
+    ) -> Self {
+        let found = optimum.motion.hold.as_deref();
+        Self {
+            model: &optimum.model,
+            control,
+            discrete,
+            momentum: &optimum.boundary.start.momentum,
+            rest: found.or(optimum.boundary.rest[1].as_deref()),
+        }
+    }
+}
+
+/// The regulator of a motion.
 ///
 /// # Errors
 /// There is none.
-pub fn regulator(
-    (model, control, task): (&Model, &Control, &Regulator),
-    discrete: &DiscreteTrajectory,
-    momentum: &[f64],
-    rest: Option<&[f64]>,
-) -> Result<Regulated, NoRegulator> {
-    let of = Design::new(model, control, task, (discrete, rest))?;
-    of.regulated(momentum, rest)
+pub fn regulator(along: Along<'_>, task: &Regulator) -> Result<Regulated, NoRegulator> {
+    Design::new(along, task)?.regulated()
 }
 
 /// The same without its delay, for what predicts the state over the delay by itself: the observer of the law does, or one that takes in the whole
@@ -42,31 +70,24 @@ pub fn regulator(
 ///
 /// # Errors
 /// There is none.
-pub(crate) fn predicting(
-    model: &Model,
-    control: &Control,
-    task: &Regulator,
-    discrete: &DiscreteTrajectory,
-    momentum: &[f64],
-    rest: Option<&[f64]>,
-) -> Result<Regulated, NoRegulator> {
+pub(crate) fn predicting(along: Along<'_>, task: &Regulator) -> Result<Regulated, NoRegulator> {
     let now = Regulator {
         delay: 0.0,
         ..task.clone()
     };
-    let of = Design::new(model, control, &now, (discrete, rest))?;
-    let mut out = of.regulated(momentum, rest)?;
+    let of = Design::new(along, &now)?;
+    let mut out = of.regulated()?;
     if task.delay > 0.0 && out.law.observer.is_none() {
-        out.law.observer = Some(of.whole(&out, &of.motion(momentum)?));
+        out.law.observer = Some(of.whole(&out, &of.motion()?));
     }
     Ok(out)
 }
 
 impl Design<'_> {
-    fn regulated(&self, momentum: &[f64], rest: Option<&[f64]>) -> Result<Regulated, NoRegulator> {
+    fn regulated(&self) -> Result<Regulated, NoRegulator> {
         let mut linearisation =
             Linearisation::new(self.model, &self.inputs).map_err(NoRegulator::State)?;
-        let motion = self.motion(momentum)?;
+        let motion = self.motion()?;
         let mut steps = Vec::new();
         for (k, part) in motion.windows(2).enumerate() {
             let inputs = self.model.variables.split(&self.discrete.scalars[k])[0];
@@ -78,7 +99,7 @@ impl Design<'_> {
         }
         let end = motion.last().expect("an instant");
         let (mut held, mut not_held) = (None, None);
-        if let Some(rest) = rest {
+        if let Some(rest) = self.rest {
             match self.held(&mut linearisation, rest) {
                 Ok(found) => held = Some(found),
                 Err(_) if stop::reason().is_some() => return Err(NoRegulator::Stopped),
@@ -103,12 +124,12 @@ impl Design<'_> {
             }
             cost = found.cost;
         }
-        let mut law = self.law(&steps, &motion, (rest, held.as_ref()));
+        let mut law = self.law(&steps, &motion, held.as_ref());
         let mut observer_radius = None;
         if let Some(observation) = &self.task.observer {
             let forces = against.as_ref().map(|against| against.forces(self));
             let forces = forces.transpose()?;
-            let found = self.observer(observation, (&steps, &motion), held.as_ref(), forces)?;
+            let found = self.observer(observation, &steps, &motion, held.as_ref(), forces)?;
             (law.observer, observer_radius) = (Some(found.0), Some(found.1));
         }
         let mut out = Regulated {

@@ -39,7 +39,8 @@ impl Design<'_> {
     pub(super) fn observer(
         &self,
         observation: &Observation,
-        (steps, motion): (&[RegulatedStep], &[State]),
+        steps: &[RegulatedStep],
+        motion: &[State],
         held: Option<&(RegulatedStep, HeldGain)>,
         forces: Option<DMatrix<f64>>,
     ) -> Result<(Observer, f64), NoRegulator> {
@@ -58,12 +59,9 @@ impl Design<'_> {
         let mut covariance: Option<DMatrix<f64>> = None;
         let mut radius = 0.0;
         for (k, step) in steps.iter().enumerate() {
-            let next = if k + 1 == steps.len() {
-                end
-            } else {
-                &motion[k + 1]
-            };
-            let scaled = self.scaled_step(observation, step, (&motion[k], next), &scales);
+            let is_last = k + 1 == steps.len();
+            let next = if is_last { end } else { &motion[k + 1] };
+            let scaled = self.scaled_step(observation, step, [&motion[k], next], &scales);
             let before = match covariance.take() {
                 Some(known) => known,
                 None => {
@@ -79,16 +77,14 @@ impl Design<'_> {
         }
         let is_held = held.is_some();
         let held = held.map(|(step, _)| {
-            let scaled = self.scaled_step(observation, step, (goal, goal), &scales);
+            let scaled = self.scaled_step(observation, step, [goal; 2], &scales);
             let of = at_rest(&scaled)?;
             radius = of.radius;
             self.filter(scaled, &of.cost, &scales)
         });
         // A stable robot comes to rest by itself, whatever is measured.
-        if points
-            .iter()
-            .all(|point| point.output.iter().all(|value| value.abs() <= BLIND))
-        {
+        let mut outputs = points.iter().flat_map(|point| &point.output);
+        if outputs.all(|value| value.abs() <= BLIND) {
             return Err(NoRegulator::Observer(NOT_SEEN.to_owned()));
         }
         let observer = Observer {
@@ -116,7 +112,7 @@ impl Design<'_> {
             rates: 0.0,
             lasting: None,
         };
-        let filter = |step: &RegulatedStep, at: (&State, &State), readings: &[f64]| {
+        let filter = |step: &RegulatedStep, at: [&State; 2], readings: &[f64]| {
             let scaled = self.scaled_step(&nothing, step, at, &scales);
             Filter {
                 readings: readings.to_vec(),
@@ -135,9 +131,9 @@ impl Design<'_> {
         Observer {
             readings: (0..size).map(Reading::State).collect(),
             points: points
-                .map(|(k, (step, point))| filter(step, (&motion[k], next(k)), &point.state))
+                .map(|(k, (step, point))| filter(step, [&motion[k], next(k)], &point.state))
                 .collect(),
-            held: held.map(|((step, _), point)| filter(step, (goal, goal), &point.state)),
+            held: held.map(|((step, _), point)| filter(step, [goal; 2], &point.state)),
             jump: self.jump(motion, of.held.is_some()),
             lasting: None,
         }
@@ -205,16 +201,12 @@ impl Design<'_> {
         let coordinates = self.coordinates.iter().map(|&i| self.unit(i));
         let rates = self.momenta.iter();
         let rates = rates.map(|&i| self.unit(i) / Regulator::RATE_TIME);
+        let forces = forces.into_iter().flat_map(|forces| self.greatest(forces));
         let joints = observation.joints.iter().map(|(_, deviation)| *deviation);
         let markers = observation.markers.iter();
         let markers = markers.flat_map(|(_, deviation)| [*deviation; 3]);
         Scales {
-            state: DVector::from_vec(
-                coordinates
-                    .chain(rates)
-                    .chain(forces.into_iter().flat_map(|forces| self.greatest(forces)))
-                    .collect(),
-            ),
+            state: DVector::from_vec(coordinates.chain(rates).chain(forces).collect()),
             readings: DVector::from_vec(joints.chain(markers).collect()),
         }
     }
@@ -238,7 +230,7 @@ impl Design<'_> {
         &self,
         observation: &Observation,
         step: &RegulatedStep,
-        (at, next): (&State, &State),
+        [at, next]: [&State; 2],
         Scales { state, readings }: &Scales,
     ) -> Scaled {
         let (n, size) = (self.coordinates.len() + self.momenta.len(), state.len());
@@ -249,17 +241,14 @@ impl Design<'_> {
         };
         let of_state = to_rates(step.by_state.view((0, 0), (n, n)) * self.by_rates(at));
         let of_inputs = to_rates(step.by_inputs.rows(0, n).into_owned());
-        let mut by_state = DMatrix::zeros(size, size);
-        by_state.view_mut((0, 0), (n, n)).copy_from(&of_state);
+        let mut by_state = of_state.resize(size, size, 0.0);
         if size > n {
             let of_forces = to_rates(step.by_forces.rows(0, n).into_owned());
-            by_state
-                .view_mut((0, n), of_forces.shape())
-                .copy_from(&of_forces);
+            let mut view = by_state.view_mut((0, n), of_forces.shape());
+            view.copy_from(&of_forces);
             (n..size).for_each(|i| by_state[(i, i)] = 1.0 / state[i]);
         }
-        let mut by_inputs = DMatrix::zeros(size, of_inputs.ncols());
-        by_inputs.rows_mut(0, n).copy_from(&of_inputs);
+        let by_inputs = of_inputs.resize_vertically(size, 0.0);
         let (values, output) = self.read(observation, at, size);
         let noise = |i: usize| observation.inputs * self.ranges[i];
         let disturbed =
@@ -351,7 +340,7 @@ pub(super) fn reproduced(
     intervals.dedup();
     let at = |k: usize| Reproduced {
         interval: k,
-        difference: difference(design, linearisation, &steps[k], (k, motion)),
+        difference: difference(design, linearisation, &steps[k], motion, k),
     };
     intervals.into_iter().map(at).collect()
 }
@@ -361,7 +350,8 @@ fn difference(
     design: &Design<'_>,
     linearisation: &Linearisation<'_>,
     step: &RegulatedStep,
-    (k, motion): (usize, &[State]),
+    motion: &[State],
+    k: usize,
 ) -> f64 {
     let model = design.model;
     let sizes = model.sizes();

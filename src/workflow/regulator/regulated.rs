@@ -187,21 +187,14 @@ impl Regulated {
 
     /// That a goal which is unstable without feedback is held by inputs of which some act to one side alone, which linear feedback does not know.
     fn one_sided(&self) -> Option<String> {
-        let (_, held) = self
-            .held
-            .as_ref()
-            .filter(|(_, held)| held.open_radius >= 1.0)?;
-        let point = self.law.held.as_ref()?;
-        let at_bound = self
-            .law
-            .inputs
-            .iter()
-            .zip(&point.inputs)
-            .filter(|(input, value)| {
-                let [low, high] = input.bounds;
-                let margin = AT_BOUND * (high - low);
-                **value <= low + margin || **value >= high - margin
-            });
+        let (_, held) = self.held.as_ref()?;
+        let point = self.law.held.as_ref().filter(|_| held.open_radius >= 1.0)?;
+        let all = self.law.inputs.iter().zip(&point.inputs);
+        let at_bound = all.filter(|(input, value)| {
+            let [low, high] = input.bounds;
+            let margin = AT_BOUND * (high - low);
+            **value <= low + margin || **value >= high - margin
+        });
         let names: Vec<&str> = at_bound.map(|(input, _)| input.name.as_str()).collect();
         (!names.is_empty()).then(|| {
             format!(
