@@ -9,18 +9,18 @@
 //! D₂L_d(q_{N−1}, q_N) + D₁L_d(q_N, q_N; u) = 0,     D₂L_d(q_N, q_N; u) = 0.
 //! ```
 
-use crate::control::boundary_conditions::{BoundaryConditions, Rests, TerminalState, rest_at};
+use crate::control::boundary_conditions::{
+    BoundaryConditions, Rests, TerminalState, check_muscles, resolve_start, rest_at,
+};
 use crate::control::costs::{EnergyCost, resisted, sources};
 use crate::control::error::BoundaryError;
-use crate::control::given_state::{check_muscles, resolve_start};
 use crate::control::goal::instant_at;
-use crate::control::limit::{BoundedQuantity, When};
-use crate::control::limits::{Length, Limits};
+use crate::control::limits::{BoundedQuantity, Length, Limits, When};
 use crate::control::prescribed::at_rest;
 use crate::control::problem::{BoundaryState, Control, Duration, During, Rest, SoughtHold};
 use crate::control::transcription::layout::Layout;
 use crate::control::transcription::structure::overdetermined;
-use crate::control::{endpoint_checks, free_parameters, goal_rows, periodic, prescribed};
+use crate::control::{endpoint_checks, free_parameters, goal_rows, prescribed};
 use crate::dynamics::{Equilibrium, Start};
 use crate::math::shortest;
 use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, System, What};
@@ -106,7 +106,7 @@ impl BoundaryConditions {
         };
         let mut model = Model::of_presolved(system.clone(), analysis, presolved)?;
         check_sought_hold(&model, control)?;
-        periodic::check(&model, control)?;
+        prescribed::check_periodic(&model, control)?;
         let rests = rests_at(&control.goal);
         prescribed::check_end_of_motions(&model, control, rests != Rests::Nothing)?;
         let (start, of_start) = start_of(&model, &control.start)?;

@@ -1,9 +1,11 @@
 //! States at the start and at the end of a motion.
+//!
+//! Comparison of the meshes of an earlier motion with those of a model.
 
 use crate::control::goal::{Orientation, Place};
-use crate::control::mesh_match::other_mesh;
 use crate::dynamics::{Start, StepState};
 use crate::kinematics::Pose;
+use crate::math::Vector;
 use crate::model::{Coordinates, Model};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -109,7 +111,7 @@ impl BoundaryState {
     }
 }
 
-/// Places that differ by no more than this part of the size of the system are one: a file has other units.
+/// Places that differ by no more than this part of the size of the system or of a mesh are one: a file has other units.
 const SAME_PLACE: f64 = 1e-9;
 
 /// The last instant of a motion.
@@ -185,4 +187,22 @@ impl EndState {
         }
         Ok(Start::moving(model, self.z.clone(), self.momentum.clone()))
     }
+}
+
+/// The first solid of a model whose nodes differ from the given ones: reference places in mm by the name of a solid.
+pub(super) fn other_mesh<'m>(
+    model: &'m Model,
+    told: &BTreeMap<String, Vec<[f64; 3]>>,
+) -> Option<&'m str> {
+    let mut solids = model.solids.iter().map(|block| &block.solid);
+    let other = solids.find(|solid| {
+        let nodes = &solid.mesh.nodes;
+        let tolerance = SAME_PLACE * solid.mesh.size();
+        let apart = |a: [f64; 3], b: &Vector| (Vector::from(a) - b).amax();
+        told.get(&solid.name).is_some_and(|told| {
+            let mut places = told.iter().zip(nodes);
+            told.len() != nodes.len() || places.any(|(&a, b)| apart(a, b) > tolerance)
+        })
+    });
+    other.map(|solid| solid.name.as_str())
 }

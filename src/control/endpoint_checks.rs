@@ -3,7 +3,7 @@
 use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::error::BoundaryError;
 use crate::control::goal::{Place, instant_at};
-use crate::control::limit::{BoundedQuantity, When};
+use crate::control::limits::{BoundedQuantity, When};
 use crate::control::problem::{BoundaryState, Control, Limit};
 use crate::control::transcription::Site;
 use crate::coordinates::Configuration;

@@ -1,10 +1,10 @@
 //! Free parameters where they may not act, and states of rest that depend on one.
 
-use crate::control::boundary_conditions::{BoundaryConditions, MomentumSlopes, Rests, rest_with};
+use crate::control::boundary_conditions::{
+    BoundaryConditions, MomentumSlopes, Rests, momentum_slopes, of_masses, rest_with,
+};
 use crate::control::error::BoundaryError;
-use crate::control::given_state::{momentum_slopes, of_masses};
-use crate::control::limit::{BoundedQuantity, When};
-use crate::control::limits::Limits;
+use crate::control::limits::{BoundedQuantity, Limits, When};
 use crate::control::problem::{BoundaryState, Control};
 use crate::dynamics::Start;
 use crate::model::{

@@ -2,8 +2,7 @@
 
 use crate::control::error::BoundaryError;
 use crate::control::goal::{Orientation, Place, Product};
-use crate::control::limit::When;
-use crate::control::limits::Limits;
+use crate::control::limits::{Limits, When};
 use crate::control::transcription::Site;
 use crate::functional::Sample;
 use crate::math::{Random, Vector};

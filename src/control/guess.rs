@@ -1,9 +1,8 @@
 //! Initial guess of the solver: interpolated between start and goal, simulated, or an earlier solution.
 
 use crate::control::boundary_conditions::BoundaryConditions;
-use crate::control::earlier::EarlierSolution;
-use crate::control::identification::{Costates, Solution};
-use crate::control::mesh_match::other_mesh;
+use crate::control::boundary_state::other_mesh;
+use crate::control::identification::{Costates, EarlierSolution, Solution};
 use crate::control::problem::{Control, Guess};
 use crate::control::resample;
 use crate::control::resample::Grids;

@@ -1,8 +1,7 @@
 //! Path limits of a problem along a motion of a robot, the one of the problem or another with joints, muscles and markers of the same names.
 
 use crate::control::BoundaryConditions;
-use crate::control::limit::BoundedQuantity;
-use crate::control::limits::{Length, Limits, largest};
+use crate::control::limits::{BoundedQuantity, Length, Limits, largest};
 use crate::control::problem::Limit;
 use crate::control::transcription::Site;
 use crate::dynamics::DiscreteTrajectory;

@@ -1,27 +1,23 @@
 //! Motion in time and rest: two readers of the discrete action.
 //!
 //! - `stepper`: Newton on the equations of one step; `midpoint`: those of the midpoint rule; `galerkin`: those of every other
-//!   method; `step_state`: the state from which a motion is resumed.
-//! - `newton_matrix`, `grid_tangent`, `tangent`: the matrix of Newton's method, by factors or by multigrid.
+//!   method.
+//! - `newton_matrix`, `tangent`: the matrix of Newton's method, by factors or by multigrid.
 //! - `updates`, `contraction`: updates of an iteration, with kept factors, and how they shrink; `solving`: settings of method and solution.
-//! - `simulate`, `trajectory`, `observe`, `trajectory`, `part_columns`, `part_columns`, `momenta`, `energies`, `momenta`: step after step,
-//!   recorded and observed.
-//! - `resolution`, `singular_configurations`: steps that are refused; `local_error`: the error of those that are not; `domain`: the end of the
-//!   first-order dielectric.
+//! - `simulate`, `trajectory`, `observe`, `part_columns`, `momenta`, `energies`: step after step, recorded and observed, and resumed.
+//! - `resolution`: steps that are refused, and the error of those that are not; `singular_configurations`: places where laws end, and the end of
+//!   the first-order dielectric.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
 //! - `state_space`: steps linearised by state and inputs; `loop_rates`: rates of the joints of closed loops, completed from those that are named;
 //!   `loop_rates`: changes of coordinates that constraints leave free.
 //! - `equilibrium`: states of rest.
 
 mod contraction;
-mod domain;
 mod energies;
 mod equilibrium;
 mod error;
 mod exchange;
 mod galerkin;
-mod grid_tangent;
-mod local_error;
 mod loop_rates;
 mod midpoint;
 mod momenta;
@@ -33,14 +29,11 @@ mod simulate;
 mod singular_configurations;
 mod solving;
 mod state_space;
-mod step_state;
 mod stepper;
 mod tangent;
 pub mod trajectory;
 mod updates;
 
-pub use domain::{OutOfDomain, largest_stretch, out_of_domain};
-pub use domain::{OutOfRange, out_of_range};
 pub use energies::{Energies, Work, energies};
 pub use equilibrium::{
     Continuation, Equilibrium, Instability, Load, LowestMode, Mode, Route, Softening,
@@ -50,25 +43,19 @@ pub use equilibrium::{
 pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};
 pub use galerkin::GalerkinEquations;
-pub use local_error::{LocalError, distance_between, local_error, local_error_of};
-pub use loop_rates::IndependentChanges;
-pub use loop_rates::rates_in_loops;
+pub use loop_rates::{IndependentChanges, rates_in_loops};
 pub use midpoint::{Midpoint, Stepper};
-pub use momenta::Start;
-pub use momenta::{last_momentum, rates_of_momentum};
+pub use momenta::{Start, last_momentum, rates_of_momentum};
 pub use observe::{observations, observed};
-pub use resolution::Balance;
+pub use resolution::{Balance, LocalError, distance_between, local_error, local_error_of};
 pub use simulate::{Lengths, StepControl, TimeGrid, go_on, simulate, simulate_by, simulate_within};
 pub use singular_configurations::{
-    BeyondLaw, muscle_without_length, part_beyond_law, reversed_muscle,
+    BeyondLaw, OutOfDomain, OutOfRange, largest_stretch, muscle_without_length, out_of_domain,
+    out_of_range, part_beyond_law, reversed_muscle,
 };
-pub use solving::{Drive, Inputs};
-pub use solving::{Integrator, MultigridUse, Newton, Solving};
+pub use solving::{Drive, Inputs, Integrator, MultigridUse, Newton, Solving};
 pub use state_space::{
     LinearStep, Linearisation, NoState, StepInput, momentum_derivatives, step_inputs,
 };
-pub use step_state::StepperReport;
-pub use step_state::{StepState, TangentState};
-pub use stepper::Equations;
-pub use stepper::Steps;
-pub use trajectory::{DiscreteTrajectory, Reading};
+pub use stepper::{Equations, Steps};
+pub use trajectory::{DiscreteTrajectory, Reading, StepState, StepperReport, TangentState};

@@ -9,7 +9,7 @@ use crate::dynamics::resolution::{Balance, turned};
 use crate::dynamics::singular_configurations;
 use crate::dynamics::singular_configurations::BeyondLaw;
 use crate::dynamics::solving::{Drive, Newton};
-use crate::dynamics::step_state::{StepState, StepperReport};
+use crate::dynamics::trajectory::{StepState, StepperReport};
 use crate::dynamics::updates::Updates;
 use crate::functional::{NodeBlocks, Order};
 use crate::model::Model;

@@ -3,7 +3,7 @@
 //! Unknowns are those of a step (see [`Variables`](crate::model::Variables)).
 
 use crate::coordinates::StepPattern;
-use crate::dynamics::step_state::TangentState;
+use crate::dynamics::trajectory::TangentState;
 use crate::math::{IsOver, Stopped, compact_index};
 use crate::model::Model;
 use crate::sparse::{Backend, Direct, Precision, Singular, Symmetry};

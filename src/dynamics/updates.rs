@@ -8,8 +8,8 @@
 use crate::dynamics::contraction::{Contraction, Verdict};
 use crate::dynamics::newton_matrix::NewtonMatrix;
 use crate::dynamics::solving::Newton;
-use crate::dynamics::step_state::TangentState;
 use crate::dynamics::tangent::Tangent;
+use crate::dynamics::trajectory::TangentState;
 use crate::math::{IsOver, Stopped};
 use crate::model::Model;
 use crate::sparse::Singular;

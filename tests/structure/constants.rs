@@ -29,7 +29,7 @@ const WITH_UNITS: [(&str, &str); 14] = [
     ("control/regulator.rs", "INTEGRAL_TIME"),
     ("control/regulator.rs", "RATE_TIME"),
     ("control/transcription/cost_rows.rs", "MILLISECOND"),
-    ("control/transcription/energy_rows.rs", "MILLIJOULE"),
+    ("control/transcription/cost_rows.rs", "MILLIJOULE"),
     ("model/system/check.rs", "DENSEST"),
     ("model/system/check.rs", "SHORTEST_SPAN"),
     ("model/constants/constant.rs", "ROUNDING"),

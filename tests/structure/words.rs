@@ -85,14 +85,14 @@ const PATHS: [(&str, &str); 53] = [
     ("control/conditions", "control/boundary_conditions"),
     ("control/ends", "control/endpoint_checks"),
     ("control/evened", "control/guess"),
-    ("control/meshes", "control/mesh_match"),
+    ("control/meshes", "control/boundary_state"),
     (
         "control/transcription/moved",
         "control/transcription/update_endpoints",
     ),
     (
         "control/transcription/placed",
-        "control/transcription/kinematic_state",
+        "control/transcription/segment",
     ),
     (
         "control/transcription/sweep",
@@ -106,7 +106,7 @@ const PATHS: [(&str, &str); 53] = [
     ),
     (
         "dynamics/equilibrium/continuation",
-        "dynamics/equilibrium/load_path",
+        "dynamics/equilibrium/stable",
     ),
     (
         "dynamics/equilibrium/equilibrium",

@@ -4,10 +4,9 @@
 
 use crate::control::numbering::{Column, Twin};
 use crate::control::transcription::Transcription;
-use crate::control::transcription::cost_rows::Summand;
-use crate::control::transcription::energy_rows::{EnergyRow, Jump};
-use crate::control::transcription::kinematic_state::Placed;
+use crate::control::transcription::cost_rows::{EnergyRow, Jump, Summand};
 use crate::control::transcription::limit_rows::Site;
+use crate::control::transcription::segment::Placed;
 use crate::functional::Horizon;
 use crate::math::Vector;
 

@@ -2,10 +2,9 @@
 
 use crate::control::transcription::Transcription;
 use crate::control::transcription::cost_rows::MILLISECOND;
-use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::Site;
 use crate::control::transcription::segment::{
-    Segment, SegmentWorkspace, Shared, instant_of, needed,
+    Placed, Segment, SegmentWorkspace, Shared, instant_of, needed,
 };
 use crate::coordinates::{Configuration, Reduced};
 use crate::functional::{BlockMask, Horizon, Order, Sample};

@@ -10,7 +10,7 @@
 //! those of the time after it.
 
 use crate::control::boundary_conditions::{BoundaryConditions, Rests};
-use crate::control::limit::BoundedQuantity;
+use crate::control::limits::BoundedQuantity;
 use crate::control::numbering::{Column, Numbering, Row, Span, Twin};
 use crate::control::problem::{BoundaryState, Control, Duration};
 use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};

@@ -2,7 +2,7 @@
 //! currents and powers bound.
 
 use crate::control::goal::instant_at;
-use crate::control::limit::{BoundedQuantity, When};
+use crate::control::limits::{BoundedQuantity, When};
 use crate::control::numbering::{Numbering, Span};
 use crate::coordinates::{CoordinateMap, Reduced};
 use crate::functional::{Functional, Measure, Outer};

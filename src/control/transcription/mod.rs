@@ -7,24 +7,20 @@
 //! Rows, limits and multipliers are scaled by magnitudes of derivatives at the guess, the objective by its value there, inputs by their bounds, lengths
 //! by the length of the system, and the interval length by its guess, so that one tolerance means the same everywhere.
 //!
-//! A [`Transcription`] has constant parts, `layout` (unknowns, equations, limits), `objective` and `structure` (entries of the derivatives),
+//! A [`Transcription`] has constant parts, `layout` (unknowns, equations, limits), `cost_rows` and `structure` (entries of the derivatives),
 //! and one that every evaluation changes, `workspace`. Its methods are in `program` (the trait [`Nlp`]), `point`, `interval_pass`, `scaling`,
 //! `costs` and `update_endpoints`.
 
 mod cost_rows;
 mod costs;
-mod energy_rows;
 mod interval_pass;
-mod kinematic_state;
 pub(super) mod layout;
 mod limit_rows;
 mod limit_values;
-mod objective;
 mod point;
 mod program;
 mod scaling;
 mod segment;
-mod start_momentum;
 pub(super) mod structure;
 mod update_endpoints;
 mod workspace;
@@ -32,17 +28,16 @@ mod workspace;
 use crate::control::BoundaryError;
 use crate::control::boundary_conditions::{BoundaryConditions, Rests};
 use crate::control::guess::InitialGuess;
-use crate::control::limit::BoundedQuantity;
+use crate::control::limits::BoundedQuantity;
 use crate::control::numbering::Numbering;
 use crate::control::problem::{self, Control};
 use crate::functional::{BlockMask, ParameterOrder};
-use crate::model::Model;
+use crate::model::{Model, Role};
 use crate::nlp::{Bounds, Nlp};
+use cost_rows::Objective;
 use layout::Layout;
 pub use layout::Outline;
 pub(super) use limit_rows::Site;
-use objective::Objective;
-use start_momentum::StartMomentum;
 use structure::{Structure, overdetermined};
 use workspace::Workspace;
 
@@ -112,7 +107,7 @@ impl<'m> Transcription<'m> {
         let objective = Objective::new(model, boundary, (control, &layout));
         let structure = Structure::new(model, &layout, &objective)?;
         let workspace = Workspace::new(model, boundary, control, initial, &layout);
-        let momentum = StartMomentum::new(model, boundary, (&layout, &structure));
+        let momentum = StartMomentum::new(model, boundary, &layout, &structure);
         let mut out = Self {
             model,
             variable_scales: Self::variable_scales(model, &layout, control, initial.h),
@@ -197,5 +192,81 @@ impl<'m> Transcription<'m> {
         let mut g = vec![0.0; self.layout.unknowns.rows.len()];
         self.constraint(x, &mut g);
         self.constraints().violation(&g)
+    }
+}
+
+/// Momenta of the start: those at the values of the parameters at the start, and straight lines in these.
+#[derive(Debug)]
+struct StartMomentum {
+    /// Momentum of each coordinate.
+    given: Vec<f64>,
+    lines: Vec<Line>,
+}
+
+/// Change of the momenta with a parameter.
+#[derive(Debug)]
+struct Line {
+    /// Column of the parameter.
+    column: usize,
+    /// Its value where the momenta are those that are given.
+    value: f64,
+    /// Slope of each momentum.
+    slopes: Vec<f64>,
+    /// Entries of the Jacobian, and the coordinate of each.
+    entries: Vec<(usize, usize)>,
+}
+
+impl StartMomentum {
+    fn new(
+        model: &Model,
+        boundary: &BoundaryConditions,
+        layout: &Layout,
+        structure: &Structure,
+    ) -> Self {
+        if layout.is_closed() {
+            return Self {
+                given: vec![0.0; boundary.start.momentum.len()],
+                lines: Vec::new(),
+            };
+        }
+        let pattern = model.action.layout();
+        let first = model.variables.range(Role::Parameter).start;
+        let lines = boundary.momentum_slopes.iter().filter_map(|one| {
+            let s = first + one.parameter;
+            let mixed = pattern.mixed.entries().enumerate();
+            let read = mixed.filter(|&(_, (i, scalar))| scalar == s && i < one.slopes.len());
+            let entry = |(slot, (i, _)): (usize, (usize, usize))| {
+                let place = pattern.mixed_at(0, 0) + slot;
+                let mut kept = structure.jacobian.kept.iter();
+                Some((kept.position(|kept| kept.place == place)?, i))
+            };
+            Some(Line {
+                column: layout.unknowns.scalar(0, s)?,
+                value: one.value,
+                slopes: one.slopes.clone(),
+                entries: read.filter_map(entry).collect(),
+            })
+        });
+        Self {
+            given: boundary.start.momentum.clone(),
+            lines: lines.collect(),
+        }
+    }
+
+    /// The momentum of a coordinate at a point, whose columns have these scales.
+    fn at(&self, i: usize, x: &[f64], scales: &[f64]) -> f64 {
+        let Some(given) = self.given.get(i) else {
+            return 0.0;
+        };
+        let of = |line: &Line| line.slopes[i] * (x[line.column] * scales[line.column] - line.value);
+        given + self.lines.iter().map(of).sum::<f64>()
+    }
+
+    /// Entries of the Jacobian that the momenta change, and their parts.
+    fn slopes(&self) -> impl Iterator<Item = (usize, f64)> + '_ {
+        self.lines.iter().flat_map(|line| {
+            let entries = line.entries.iter();
+            entries.map(|&(entry, i)| (entry, line.slopes[i]))
+        })
     }
 }

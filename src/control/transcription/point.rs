@@ -4,7 +4,7 @@ use crate::control::guess::InitialGuess;
 use crate::control::identification::Costates;
 use crate::control::numbering::{Column, Row, Twin};
 use crate::control::transcription::Transcription;
-use crate::control::transcription::kinematic_state::Placed;
+use crate::control::transcription::segment::Placed;
 use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt;

@@ -1,11 +1,10 @@
 //! The transcription as a nonlinear program: values, derivatives and structures for the solver, and voltages whose squares it may take as unknowns.
 
-use crate::control::limit::{BoundedQuantity, When};
+use crate::control::limits::{BoundedQuantity, When};
 use crate::control::numbering::{Column, Row};
 use crate::control::transcription::Transcription;
-use crate::control::transcription::cost_rows::MILLISECOND;
+use crate::control::transcription::cost_rows::{MILLISECOND, Objective};
 use crate::control::transcription::limit_rows::Site;
-use crate::control::transcription::objective::Objective;
 use crate::control::transcription::workspace::Workspace;
 use crate::functional::Order;
 use crate::model::Role;
@@ -82,7 +81,7 @@ impl Nlp for Transcription<'_> {
                 * match *row {
                     Row::Instant { k, i } => {
                         let start = match k {
-                            0 => self.momentum.at(i, (x, &self.variable_scales)),
+                            0 => self.momentum.at(i, x, &self.variable_scales),
                             _ => 0.0,
                         };
                         let again = match self.layout.twin {

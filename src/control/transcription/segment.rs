@@ -3,10 +3,10 @@
 //! A stretch owns its instants up to the last, which begins the next stretch; of that it has a copy, whose forces and
 //! carried blocks are added when both are done. Where stretches meet depends on the number of intervals only, so results
 //! are the same for any number of threads.
+//!
+//! State of the kinematics of a horizon: the quantities known at its instants.
 
-use crate::control::transcription::cost_rows::{CostRow, fill_costs};
-use crate::control::transcription::energy_rows::{EnergyRow, fill_energies};
-use crate::control::transcription::kinematic_state::Placed;
+use crate::control::transcription::cost_rows::{CostRow, EnergyRow, fill_costs, fill_energies};
 use crate::control::transcription::limit_rows::{LimitRow, Site, fill_limits};
 use crate::coordinates::{Configuration, Interval, Reduced, Scratch};
 use crate::functional::{BlockMask, Horizon, Order, Outer, Sample};
@@ -225,4 +225,15 @@ pub(super) fn instant_of(
         rows.fill(0.0);
         action.rows(instant, scratch, rows);
     }
+}
+
+/// Quantities known at the instants for the present point.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Placed {
+    /// Coordinates only.
+    Nothing,
+    /// Vectors.
+    Vectors,
+    /// Vectors and columns of P.
+    Columns,
 }

@@ -2,10 +2,9 @@
 
 use crate::control::error::BoundaryError;
 use crate::control::numbering::{Row, Twin};
-use crate::control::transcription::energy_rows::Jump;
+use crate::control::transcription::cost_rows::{CostInput, Jump, Objective};
 use crate::control::transcription::layout::Layout;
 use crate::control::transcription::limit_rows::LimitRow;
-use crate::control::transcription::objective::{CostInput, Objective};
 use crate::model::{Model, Role};
 use crate::nlp::Entries;
 use crate::stop;

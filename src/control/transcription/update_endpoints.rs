@@ -2,10 +2,10 @@
 
 use crate::control::BoundaryError;
 use crate::control::boundary_conditions::BoundaryConditions;
-use crate::control::limit::BoundedQuantity;
+use crate::control::limits::BoundedQuantity;
 use crate::control::transcription::Transcription;
-use crate::control::transcription::kinematic_state::Placed;
 use crate::control::transcription::limit_rows::{LimitRow, Step};
+use crate::control::transcription::segment::Placed;
 use crate::model::Model;
 
 impl Transcription<'_> {

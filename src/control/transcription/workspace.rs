@@ -3,10 +3,9 @@
 use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::guess::InitialGuess;
 use crate::control::problem::Control;
-use crate::control::transcription::kinematic_state::Placed;
+use crate::control::transcription::cost_rows::unit_of;
 use crate::control::transcription::layout::Layout;
-use crate::control::transcription::objective::unit_of;
-use crate::control::transcription::segment::SegmentWorkspace;
+use crate::control::transcription::segment::{Placed, SegmentWorkspace};
 use crate::coordinates::Configuration;
 use crate::functional::SumDerivatives;
 use crate::model::{Model, Time};

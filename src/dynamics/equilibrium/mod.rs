@@ -2,13 +2,13 @@
 //!
 //! - `statics`: Newton on the rows of rest, by factors or by an iteration; `static_matrix`: their matrix; `relaxation`: states that Newton's method does
 //!   not reach.
-//! - `growth`: loads that grow; `arc_length`: the path of equilibria by arc length; `load_path`: its points.
-//! - `rest_state`: a state of rest; `softest_mode`: its softest mode and slowest vibration; `growing_motions`: its stability; `stable`: the stable one.
+//! - `growth`: loads that grow; `arc_length`: the path of equilibria by arc length.
+//! - `rest_state`: a state of rest; `softest_mode`: its softest mode and slowest vibration; `growing_motions`: its stability; `stable`: the stable
+//!   one, and the points of a path.
 
 mod arc_length;
 mod growing_motions;
 mod growth;
-mod load_path;
 mod relaxation;
 mod rest_state;
 mod softest_mode;
@@ -17,9 +17,8 @@ mod static_matrix;
 mod statics;
 
 pub use growth::equilibrium;
-pub use load_path::{Continuation, continuation};
 pub use rest_state::{
     Equilibrium, Instability, Load, LowestMode, Mode, Route, Softening, StabilityLoss, UNSTABLE,
 };
 pub use softest_mode::lowest_mode;
-pub use stable::{stable_equilibrium, stable_equilibrium_by};
+pub use stable::{Continuation, continuation, stable_equilibrium, stable_equilibrium_by};
