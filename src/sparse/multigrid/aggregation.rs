@@ -7,33 +7,25 @@
 //! A point of a coarse level has two nodes: the translation with the potential, and the rotation times a length, so that all numbers are of one
 //! size.
 
-use crate::math::join;
+use crate::sparse::multigrid::halves::{Marks, each_row, in_two};
 use crate::sparse::multigrid::node_grid::{Block, COMPONENTS, add_product, add_transposed_product};
-use crate::sparse::multigrid::triangles::{BlockRows, MeshMatrix, distance};
-use std::ops::Range;
+use crate::sparse::multigrid::triangles::{BlockMatrix, BlockRows, distance};
 
 /// Transfer to a coarser level.
 #[derive(Debug)]
 pub(super) struct Aggregation {
     is_strong: Vec<bool>,
-    rigid: Vec<[Rigid; 2]>,
+    pub(super) rigid: Vec<[Rigid; 2]>,
     /// P.
     pub(super) pattern: BlockRows,
     pub(super) values: Vec<Block>,
     /// A P.
     products: BlockRows,
-    of_products: Vec<Block>,
+    pub(super) of_products: Vec<Block>,
     /// Rows and blocks of P by column.
     pub(super) children: Vec<Vec<[u32; 2]>>,
     /// Work space of either half of the rows.
     marks: [Marks; 2],
-}
-
-/// A row, and the place in it of each of its columns.
-#[derive(Debug)]
-struct Marks {
-    places: Vec<u32>,
-    row: Vec<Block>,
 }
 
 impl Aggregation {
@@ -63,10 +55,7 @@ impl Aggregation {
         let found = Self {
             values: vec![Block::default(); pattern.blocks()],
             of_products: vec![Block::default(); products.blocks()],
-            marks: [(); 2].map(|()| Marks {
-                places: vec![0; free.len()],
-                row: Vec::new(),
-            }),
+            marks: Marks::of_halves(free.len()),
             is_strong,
             rigid,
             pattern,
@@ -76,18 +65,13 @@ impl Aggregation {
         (found, coarse)
     }
 
-    /// Number of blocks of what is kept.
-    pub(super) fn blocks(&self) -> usize {
-        self.values.len() + self.of_products.len() + 2 * self.rigid.len()
-    }
-
     /// Makes P, and the coarse matrix, of a matrix with the inverse of its diagonal blocks and a factor ω.
     pub(super) fn prepare(
         &mut self,
-        fine: &MeshMatrix,
+        fine: &BlockMatrix,
         inverse: &[Block],
         damping: f32,
-        coarse: &mut MeshMatrix,
+        coarse: &mut BlockMatrix,
     ) {
         let rows = &fine.rows;
         let Self {
@@ -136,16 +120,7 @@ impl Aggregation {
             }
         });
         let (products, of_products) = (&*products, &*of_products);
-        let coarse_rows = coarse.rows.clone();
-        let halves = coarse.in_two().map(|mut rows| {
-            let pattern = &coarse_rows;
-            move |row: usize, blocks: &[Block]| {
-                for (block, column) in blocks.iter().zip(pattern.columns(row)) {
-                    *rows.next(row, *column as usize) = *block;
-                }
-            }
-        });
-        each_row(&coarse_rows, halves, marks, |row, own, marks| {
+        coarse.write_rows(marks, |row, own, marks| {
             for &[child, block] in &children[row] {
                 let weights = &values[block as usize];
                 for product in products.range(child as usize) {
@@ -155,53 +130,6 @@ impl Aggregation {
             }
         });
     }
-}
-
-/// Writes rows one after the other to either half of the blocks of a pattern.
-fn in_two<'v>(
-    values: &'v mut [Block],
-    pattern: &BlockRows,
-) -> [impl FnMut(usize, &[Block]) + Send + use<'v>; 2] {
-    let half = pattern.count() / 2;
-    let (lower, upper) = values.split_at_mut(pattern.range(half).start);
-    [lower, upper].map(|half| {
-        let mut rest = half;
-        move |_: usize, blocks: &[Block]| {
-            let (own, behind) = std::mem::take(&mut rest).split_at_mut(blocks.len());
-            own.copy_from_slice(blocks);
-            rest = behind;
-        }
-    })
-}
-
-/// Finds each row of a pattern by `find`, which is handed its blocks as zeros and the place of each of its columns, and hands it over; both
-/// halves of the rows at once.
-fn each_row(
-    pattern: &BlockRows,
-    halves: [impl FnMut(usize, &[Block]) + Send; 2],
-    marks: &mut [Marks; 2],
-    find: impl Fn(usize, &mut [Block], &[u32]) + Sync,
-) {
-    let half = pattern.count() / 2;
-    let of_rows =
-        |rows: Range<usize>, hand_over: &mut dyn FnMut(usize, &[Block]), marks: &mut Marks| {
-            let Marks { places, row: own } = marks;
-            for row in rows {
-                let columns = pattern.columns(row);
-                for (place, column) in columns.iter().enumerate() {
-                    places[*column as usize] = place as u32;
-                }
-                own.clear();
-                own.resize(columns.len(), Block::default());
-                find(row, own, places);
-                hand_over(row, own);
-            }
-        };
-    let ([mut a, mut b], [of_a, of_b]) = (halves, marks);
-    join(
-        || of_rows(0..half, &mut a, of_a),
-        || of_rows(half..pattern.count(), &mut b, of_b),
-    );
 }
 
 /// Distance of neighbours, relative to that of the nearest one, up to which they are strongly coupled.
@@ -364,11 +292,10 @@ impl Points {
                 other == node / each || near.contains(&(other as u32))
             }));
         }
-        let rigid = free.iter().enumerate().map(|(node, free)| {
-            let point = node / each;
-            let aggregate = of[point] as usize;
-            self.rigid(point, (&points, aggregate), node % each == 0, *free)
-        });
+        let rigid = free
+            .iter()
+            .enumerate()
+            .map(|(node, free)| self.rigid(node, *free, &points, of[node / each] as usize));
         let rigid: Vec<_> = rigid.collect();
         let mut moving = vec![0; OF_AGGREGATE * count];
         for (node, block) in rigid.iter().flatten() {
@@ -388,16 +315,17 @@ impl Points {
     /// Rigid motion of a node of a point with an aggregate: of its place, or of its rotation.
     fn rigid(
         &self,
-        point: usize,
-        (coarse, aggregate): (&Self, usize),
-        is_place: bool,
+        node: usize,
         free: u8,
+        coarse: &Self,
+        aggregate: usize,
     ) -> [Rigid; OF_AGGREGATE] {
+        let point = node / self.nodes_of_each;
         let (mut moved, mut turned) = (Block::default(), Block::default());
         let length = coarse.lengths[aggregate];
         let is_free = |component: usize| free & 1 << component != 0;
         let turns = |axis: &usize| self.have_rotations && is_free(*axis);
-        if is_place {
+        if node.is_multiple_of(self.nodes_of_each) {
             for component in (0..COMPONENTS).filter(|&c| is_free(c)) {
                 moved[(COMPONENTS + 1) * component] = 1.0;
             }

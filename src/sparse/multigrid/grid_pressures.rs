@@ -1,10 +1,10 @@
 //! Elements of a grid with their pressures. They count like their first nodes; there is none where a node is a last one along an axis.
 
 use crate::sparse::multigrid::node_grid::{
-    AtNode, Axis, Block, COMPONENTS, CORNERS, Field, NEIGHBOURS, OWN, corners, indices,
-    neighbour_of, node_at,
+    AtNode, Axis, Block, COMPONENTS, CORNERS, NEIGHBOURS, OWN, corners, indices, neighbour_of,
+    node_at,
 };
-use crate::sparse::multigrid::pressures::{Elements, Pressures};
+use crate::sparse::multigrid::pressures::{Elements, Field};
 use std::ops::Range;
 
 /// Rows of neighbours, three in each.
@@ -15,9 +15,8 @@ const ROWS: usize = NEIGHBOURS / 3;
 pub(super) struct GridElements {
     counts: [usize; 3],
     corners: [usize; CORNERS],
-    /// Number of planes of the next coarser grid, and the plane of it at or below each plane along an axis.
-    coarse: [usize; 3],
-    below: [Vec<usize>; 3],
+    /// Element of the next coarser grid that each is a part of; none of the coarsest grid.
+    parents: Vec<u32>,
     /// S, by element and neighbour.
     schur: Vec<[f32; NEIGHBOURS]>,
 }
@@ -25,31 +24,29 @@ pub(super) struct GridElements {
 impl GridElements {
     /// Of a grid, with the transfer to a coarser one.
     pub(super) fn new(counts: [usize; 3], transfer: Option<&[Axis; 3]>) -> Self {
-        let axes = transfer.map(<[Axis; 3]>::each_ref);
-        let below = |axis: &Axis| {
-            let planes = 0..axis.parents.len();
-            let below = planes.map(|plane| axis.kept.partition_point(|&kept| kept <= plane) - 1);
-            below.collect()
-        };
+        let nodes = 0..counts.iter().product();
+        let parents = transfer.map(|axes| {
+            let coarse = axes.each_ref().map(|axis| axis.kept.len());
+            let parent = |element: usize| {
+                let at = indices(counts, element);
+                let below = |axis: usize| axes[axis].kept.partition_point(|&k| k <= at[axis]) - 1;
+                node_at(coarse, [0, 1, 2].map(below)) as u32
+            };
+            nodes.clone().map(parent).collect()
+        });
         Self {
             counts,
             corners: corners(counts),
-            coarse: axes.map_or([0; 3], |axes| axes.map(|axis| axis.kept.len())),
-            below: axes.map_or_else(Default::default, |axes| axes.map(below)),
-            schur: vec![[0.0; NEIGHBOURS]; counts.iter().product()],
+            parents: parents.unwrap_or_default(),
+            schur: vec![[0.0; NEIGHBOURS]; nodes.len()],
         }
-    }
-
-    /// Axis indices of the coarser element that an element is part of.
-    fn above(&self, element: usize) -> [usize; 3] {
-        let at = indices(self.counts, element);
-        std::array::from_fn(|axis| self.below[axis][at[axis]])
     }
 }
 
 impl Elements for GridElements {
-    fn field(&self) -> Field<f32> {
-        Field::new(self.counts)
+    fn field(&self) -> Field {
+        let [n_x, n_y, _] = self.counts;
+        Field::new(self.schur.len(), n_x * n_y + n_x + 1)
     }
 
     fn slopes(&self) -> usize {
@@ -66,8 +63,13 @@ impl Elements for GridElements {
         self.corners.iter().map(move |corner| element + corner)
     }
 
+    fn of_node(&self, node: usize) -> impl Iterator<Item = usize> {
+        let steps = self.corners.iter();
+        steps.filter_map(move |step| node.checked_sub(*step))
+    }
+
     fn parent(&self, element: usize) -> usize {
-        node_at(self.coarse, self.above(element))
+        self.parents[element] as usize
     }
 
     fn couple(&mut self, slopes: &[AtNode], compliance: &[f32], blocks: &[Block]) {
@@ -106,7 +108,7 @@ impl Elements for GridElements {
     }
 
     #[inline(always)]
-    fn product(&self, element: usize, x: &Field<f32>) -> f32 {
+    fn product(&self, element: usize, x: &Field) -> f32 {
         let [n_x, n_y, _] = self.counts;
         // The margin keeps all neighbours in the list.
         let first = x.margin + element - n_x * n_y - n_x - 1;
@@ -122,54 +124,5 @@ impl Elements for GridElements {
     fn bytes(&self) -> usize {
         let of_slopes = CORNERS * size_of::<AtNode>();
         self.schur.len() * (of_slopes + size_of::<[f32; NEIGHBOURS + 9]>())
-    }
-}
-
-impl Pressures<GridElements> {
-    /// Writes the slopes and compliances of a coarser grid, without the slopes by values that are given there: an element takes in those
-    /// that it consists of. `free` has a bit for each component of a coarse node that moves.
-    pub(super) fn coarsen(&self, axes: &[Axis; 3], free: &[u8], coarse: &mut Self) {
-        coarse.slopes.fill(AtNode::default());
-        coarse.compliance.fill(0.0);
-        for (element, slopes) in self.slopes.chunks_exact(CORNERS).enumerate() {
-            if self.compliance[element] == 0.0 {
-                continue;
-            }
-            let parent = self.elements.above(element);
-            let to = self.elements.parent(element);
-            coarse.compliance[to] += self.compliance[element];
-            let at = indices(self.elements.counts, element);
-            for (corner, slopes) in slopes.iter().enumerate() {
-                let weights = [0, 1, 2].map(|axis| {
-                    let plane = at[axis] + (corner >> axis & 1);
-                    let mut weights = [0.0; 2];
-                    for &(coarse, weight) in &axes[axis].parents[plane] {
-                        if weight > 0.0 {
-                            weights[coarse - parent[axis]] += weight;
-                        }
-                    }
-                    weights
-                });
-                for of_coarse in 0..CORNERS {
-                    let weight: f32 = (0..3)
-                        .map(|axis| weights[axis][of_coarse >> axis & 1])
-                        .product();
-                    let to = &mut coarse.slopes[CORNERS * to + of_coarse];
-                    for (sum, slope) in to.iter_mut().zip(slopes) {
-                        *sum += weight * slope;
-                    }
-                }
-            }
-        }
-        for (element, slopes) in coarse.slopes.chunks_exact_mut(CORNERS).enumerate() {
-            for (slopes, node) in slopes.iter_mut().zip(coarse.elements.nodes(element)) {
-                let free = free.get(node).copied().unwrap_or_default();
-                for (component, slope) in slopes.iter_mut().enumerate() {
-                    if free & (1 << component) == 0 {
-                        *slope = 0.0;
-                    }
-                }
-            }
-        }
     }
 }

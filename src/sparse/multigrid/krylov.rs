@@ -42,6 +42,8 @@ pub(super) struct Krylov {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Iterated {
     pub(super) iterations: usize,
+    /// Norm of the right-hand side.
+    whole: f64,
     /// Norm of the residual relative to that of the right-hand side.
     pub(super) residual: f64,
 }
@@ -89,12 +91,13 @@ impl Krylov {
         let whole = norm(rhs);
         let mut iterated = Iterated {
             iterations: 0,
+            whole,
             residual: if whole == 0.0 { 0.0 } else { 1.0 },
         };
         // Not finite numbers end it too.
         while iterated.residual > tolerance && iterated.iterations < LIMIT {
             let before = norm(rhs);
-            self.round(operator, rhs, x, (whole, tolerance), &mut iterated, is_over)?;
+            self.round(operator, rhs, x, tolerance, &mut iterated, is_over)?;
             if iterated.residual.is_nan() || norm(rhs) > 0.9 * before {
                 iterated.residual = f64::INFINITY;
             }
@@ -111,10 +114,11 @@ impl Krylov {
         operator: &mut impl Operator,
         rhs: &mut [f64],
         x: &mut [f64],
-        (whole, tolerance): (f64, f64),
+        tolerance: f64,
         iterated: &mut Iterated,
         is_over: IsOver<'_>,
     ) -> Result<(), Stopped> {
+        let whole = iterated.whole;
         self.left = [0.0; RESTART + 1];
         self.left[0] = norm(rhs);
         let scale = self.left[0].recip();

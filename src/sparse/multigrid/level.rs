@@ -2,83 +2,76 @@
 //!
 //! Entries of blocks are by column. Rows and columns of components with given values are zero.
 
-use crate::sparse::multigrid::node_grid::{
-    AtNode, Block, COMPONENTS, Field, NodeBlock, inverse_of,
-};
-use crate::sparse::multigrid::pressures::{Elements, Pressures};
+use crate::sparse::multigrid::node_grid::{AtNode, Block, COMPONENTS, NodeBlock, inverse_of};
+use crate::sparse::multigrid::pressures::{Elements, Interpolation, Pressures};
+use crate::sparse::multigrid::slab::{Equations, Slab};
+use crate::sparse::multigrid::triangles::{BlockMatrix, BlockRows};
 use crate::sparse::{Direct, Singular};
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// A level of so few nodes is solved directly.
 pub(super) const COARSEST: usize = 100;
 
-/// Nodes of a level with their matrix, and the transfer to the next coarser level.
-pub(super) trait Nodes: Debug + Sized {
+/// Transfer to the next coarser level.
+pub(super) trait Transfer: Debug + Sized + Interpolation {
     type Elements: Elements;
+    /// Places of the nodes of the finest level.
+    type Nodes: Debug;
 
-    /// Zero at all nodes.
-    fn field<T: Copy + Default>(&self) -> Field<T>;
+    /// Factor of the diagonal of the coarse matrix.
+    const OF_DIAGONAL: f32;
 
-    /// The block on the diagonal of a node.
-    fn diagonal(&self, node: usize) -> &Block;
-
-    /// Makes the matrix of the next coarser level, and the volumes of its elements.
-    fn coarsen(fine: &mut Level<Self>, coarse: &mut Level<Self>);
-
-    /// A forward sweep from zero.
-    fn forward(&mut self, inverse: &[Block], rhs: &Field, x: &mut Field);
-
-    /// Writes what a forward sweep leaves of the right-hand side: neighbours behind have had no part in it, unless the solution was changed
-    /// after it.
-    fn leave(&self, is_changed: bool, rhs: &Field, x: &Field, residual: &mut Field);
-
-    /// A backward sweep, which reads the matrix backward too.
-    fn backward(&mut self, inverse: &[Block], rhs: &Field, x: &mut Field);
+    /// Makes the matrix of the next coarser level, given values included.
+    fn coarsen(fine: &mut Level<Self>, coarse: &mut BlockMatrix);
 
     /// Makes a residual the right-hand side of the next coarser level.
-    fn restrict(&self, residual: &Field, coarse: &Self, rhs: &mut Field);
+    fn restrict(&self, residual: &[AtNode], rhs: &mut [AtNode]);
 
     /// Adds the solution of the next coarser level.
-    fn correct(&self, x: &mut Field, coarse: &Self, correction: &Field);
-
-    /// The blocks of the matrix in order.
-    fn blocks(&self) -> impl Iterator<Item = &Block>;
-
-    /// Number of a block by its row and column.
-    fn find(&self, row: usize, column: usize) -> Option<usize>;
-
-    /// Calls `visit` with number, row and column of each block between nodes of the level, and the block.
-    fn visit(&self, visit: impl FnMut(usize, [usize; 2], &Block));
+    fn correct(&self, x: &mut [AtNode], correction: &[AtNode]);
 
     /// Number of blocks that are kept.
-    fn count(&self) -> usize;
+    fn blocks(&self) -> usize;
 }
 
 /// A level.
 #[derive(Debug)]
-pub(super) struct Level<N: Nodes> {
-    pub(super) nodes: N,
+pub(super) struct Level<T: Transfer> {
+    pub(super) matrix: BlockMatrix,
+    slabs: Vec<Slab>,
     /// For each node, a bit for each component without a given value.
     pub(super) free: Vec<u8>,
     /// Inverse of the diagonal blocks; rows and columns of given values are zero.
     pub(super) inverse: Vec<Block>,
-    pub(super) rhs: Field,
-    pub(super) x: Field,
-    pub(super) residual: Field,
+    pub(super) rhs: Vec<AtNode>,
+    pub(super) x: Vec<AtNode>,
+    pub(super) residual: Vec<AtNode>,
     /// Pressures of elements, where they resist changes of volume.
-    pub(super) pressures: Option<Pressures<N::Elements>>,
+    pub(super) pressures: Option<Pressures<T::Elements>>,
+    /// Transfer to the next coarser level; none of the coarsest.
+    pub(super) transfer: Option<T>,
 }
 
-impl<N: Nodes> Level<N> {
+impl<T: Transfer> Level<T> {
     /// A level without a matrix.
-    pub(super) fn new(nodes: N, free: Vec<u8>, elements: Option<N::Elements>) -> Self {
+    pub(super) fn new(
+        rows: Arc<BlockRows>,
+        slabs: Vec<Slab>,
+        free: Vec<u8>,
+        transfer: Option<T>,
+        elements: Option<T::Elements>,
+    ) -> Self {
+        let zero = || vec![AtNode::default(); free.len()];
         Self {
+            matrix: BlockMatrix::new(rows),
+            slabs,
             inverse: vec![Block::default(); free.len()],
-            rhs: nodes.field(),
-            x: nodes.field(),
-            residual: nodes.field(),
+            rhs: zero(),
+            x: zero(),
+            residual: zero(),
             pressures: elements.map(Pressures::new),
-            nodes,
+            transfer,
             free,
         }
     }
@@ -86,10 +79,10 @@ impl<N: Nodes> Level<N> {
     /// Inverts the diagonal blocks; returns the node whose block is singular, if there is one.
     fn invert(&mut self) -> Result<(), usize> {
         for field in [&mut self.rhs, &mut self.x, &mut self.residual] {
-            field.values.fill(AtNode::default());
+            field.fill(AtNode::default());
         }
         for (node, inverse) in self.inverse.iter_mut().enumerate() {
-            *inverse = inverse_of(self.nodes.diagonal(node)).ok_or(node)?;
+            *inverse = inverse_of(self.matrix.diagonal(node)).ok_or(node)?;
         }
         if let Some(pressures) = &mut self.pressures {
             pressures.prepare(&self.inverse);
@@ -97,16 +90,31 @@ impl<N: Nodes> Level<N> {
         Ok(())
     }
 
+    /// Makes the matrix of the next coarser level, and the volumes of its elements.
+    fn coarsen(&mut self, coarse: &mut Self) {
+        T::coarsen(self, &mut coarse.matrix);
+        coarse.matrix.hold(&coarse.free, T::OF_DIAGONAL);
+        if let (Some(transfer), Some(from)) = (&self.transfer, &self.pressures)
+            && let Some(to) = &mut coarse.pressures
+        {
+            from.coarsen(transfer, &coarse.free, to);
+        }
+    }
+
     /// A forward sweep from zero with a correction of pressures, then what it leaves of the right-hand side.
     fn sweep_down(&mut self) {
-        self.nodes.forward(&self.inverse, &self.rhs, &mut self.x);
+        let equations = Equations {
+            matrix: &self.matrix,
+            inverse: &self.inverse,
+            rhs: &self.rhs,
+        };
+        equations.sweep_forward(&mut self.slabs, &mut self.x);
         if let Some(pressures) = &mut self.pressures {
             pressures.p.values.fill(0.0);
             pressures.correct(&mut self.x, &self.inverse, &mut self.residual);
         }
         let is_changed = self.pressures.is_some();
-        self.nodes
-            .leave(is_changed, &self.rhs, &self.x, &mut self.residual);
+        equations.leave(&self.slabs, is_changed, &self.x, &mut self.residual);
         if let Some(pressures) = &mut self.pressures {
             pressures.subtract_forces(&mut self.residual);
             pressures.leave(&self.x);
@@ -118,8 +126,9 @@ impl<N: Nodes> Level<N> {
         if let (Some(from), Some(to)) = (&self.pressures, &mut coarse.pressures) {
             from.restrict(to);
         }
-        self.nodes
-            .restrict(&self.residual, &coarse.nodes, &mut coarse.rhs);
+        if let Some(transfer) = &self.transfer {
+            transfer.restrict(&self.residual, &mut coarse.rhs);
+        }
     }
 
     /// Adds the solution of the next coarser level.
@@ -127,7 +136,9 @@ impl<N: Nodes> Level<N> {
         if let (Some(to), Some(from)) = (&mut self.pressures, &coarse.pressures) {
             to.add_coarse(from);
         }
-        self.nodes.correct(&mut self.x, &coarse.nodes, &coarse.x);
+        if let Some(transfer) = &self.transfer {
+            transfer.correct(&mut self.x, &coarse.x);
+        }
     }
 
     /// A backward sweep, under the forces of pressures, and a correction of these.
@@ -135,7 +146,12 @@ impl<N: Nodes> Level<N> {
         if let Some(pressures) = &self.pressures {
             pressures.subtract_forces(&mut self.rhs);
         }
-        self.nodes.backward(&self.inverse, &self.rhs, &mut self.x);
+        let equations = Equations {
+            matrix: &self.matrix,
+            inverse: &self.inverse,
+            rhs: &self.rhs,
+        };
+        equations.sweep_backward(&mut self.slabs, &mut self.x);
         if let Some(pressures) = &mut self.pressures {
             pressures.correct(&mut self.x, &self.inverse, &mut self.residual);
         }
@@ -143,43 +159,42 @@ impl<N: Nodes> Level<N> {
 
     /// Calls `visit` with row, column and value of each entry of the matrix of displacements alone, in a fixed order.
     fn visit(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
-        let with_volumes = self.pressures.as_ref().map(|pressures| {
-            let blocks = self.nodes.blocks();
-            let mut matrix: Vec<NodeBlock> = blocks.map(|block| block.map(f64::from)).collect();
-            pressures.add_to(&mut matrix, |row, column| self.nodes.find(row, column));
-            matrix
-        });
-        self.nodes.visit(|number, [node, other], block| {
-            let block = match &with_volumes {
-                Some(matrix) => matrix[number],
-                None => block.map(f64::from),
-            };
+        let rows = &self.matrix.rows;
+        let blocks = self.matrix.blocks();
+        let mut matrix: Vec<NodeBlock> = blocks.map(|block| block.map(f64::from)).collect();
+        if let Some(pressures) = &self.pressures {
+            pressures.add_to(&mut matrix, |row, column| rows.find(row, column));
+        }
+        for (block, (node, other)) in matrix.iter().zip(rows.entries()) {
             for (entry, value) in block.iter().enumerate() {
                 let (row, column) = (entry % COMPONENTS, entry / COMPONENTS);
                 visit(COMPONENTS * node + row, COMPONENTS * other + column, *value);
             }
-        });
+        }
     }
 }
 
 /// Levels of one part.
 #[derive(Debug)]
-pub(super) struct Hierarchy<N: Nodes> {
+pub(super) struct Hierarchy<T: Transfer> {
+    /// Places of the nodes of the finest level.
+    pub(super) nodes: T::Nodes,
     /// Ordered, the finest first.
-    pub(super) levels: Vec<Level<N>>,
+    pub(super) levels: Vec<Level<T>>,
     coarsest: Direct,
     values: Vec<f64>,
     rhs: Vec<f64>,
 }
 
-impl<N: Nodes> Hierarchy<N> {
+impl<T: Transfer> Hierarchy<T> {
     /// Of levels without matrices, the finest first.
-    pub(super) fn new(levels: Vec<Level<N>>) -> Self {
+    pub(super) fn new(nodes: T::Nodes, levels: Vec<Level<T>>) -> Self {
         let last = &levels[levels.len() - 1];
         let size = COMPONENTS * last.free.len();
         let mut entries = Vec::new();
         last.visit(&mut |row, col, _| entries.push((row, col)));
         Self {
+            nodes,
             coarsest: Direct::new(size, &entries),
             values: vec![0.0; entries.len()],
             rhs: vec![0.0; size],
@@ -197,7 +212,7 @@ impl<N: Nodes> Hierarchy<N> {
             let level = &mut above[fine];
             level.invert().map_err(|column| Singular { column })?;
             if let Some(coarse) = below.first_mut() {
-                N::coarsen(level, coarse);
+                level.coarsen(coarse);
             }
         }
         let mut values = self.values.iter_mut();
@@ -233,13 +248,13 @@ impl<N: Nodes> Hierarchy<N> {
         if let Some(pressures) = &mut last.pressures {
             pressures.condense(&mut last.rhs);
         }
-        let given = last.rhs.nodes().as_flattened();
+        let given = last.rhs.as_flattened();
         for (value, from) in self.rhs.iter_mut().zip(given) {
             *value = f64::from(*from);
         }
         self.coarsest.solve_roughly(&mut self.rhs);
         let found = last.free.iter().zip(self.rhs.chunks_exact(COMPONENTS));
-        for (x, (free, found)) in last.x.nodes_mut().iter_mut().zip(found) {
+        for (x, (free, found)) in last.x.iter_mut().zip(found) {
             *x = std::array::from_fn(|component| match free & (1 << component) {
                 0 => 0.0,
                 _ => found[component] as f32,
@@ -252,10 +267,12 @@ impl<N: Nodes> Hierarchy<N> {
 
     /// Bytes of all levels.
     pub(super) fn bytes(&self) -> usize {
-        let of_level = |level: &Level<N>| {
+        let of_level = |level: &Level<T>| {
             let pressures = level.pressures.as_ref();
             let of_pressures = pressures.map_or(0, |pressures| pressures.elements.bytes());
-            size_of::<Block>() * (level.nodes.count() + level.free.len()) + of_pressures
+            let of_transfer = level.transfer.as_ref().map_or(0, Transfer::blocks);
+            let blocks = level.matrix.rows.blocks() + of_transfer + level.free.len();
+            size_of::<Block>() * blocks + of_pressures
         };
         self.levels.iter().map(of_level).sum()
     }

@@ -1,13 +1,14 @@
 //! Levels of a mesh without a grid: matrices by rows of blocks, and transfer by smoothed aggregation.
 
-use crate::math::join;
 use crate::sparse::multigrid::aggregation::{Aggregation, Points};
-use crate::sparse::multigrid::level::{COARSEST, Hierarchy, Level, Nodes};
+use crate::sparse::multigrid::level::{COARSEST, Hierarchy, Level, Transfer};
 use crate::sparse::multigrid::mesh_pressures::MeshElements;
 use crate::sparse::multigrid::node_grid::{
-    AtNode, Block, COMPONENTS, Field, add, add_transposed, free_components, solved,
+    AtNode, COMPONENTS, add, add_transposed, free_components,
 };
-use crate::sparse::multigrid::triangles::{BlockRows, MeshMatrix, NodeMesh};
+use crate::sparse::multigrid::pressures::Interpolation;
+use crate::sparse::multigrid::slab::Slab;
+use crate::sparse::multigrid::triangles::{BlockMatrix, BlockRows, NodeMesh};
 use std::sync::Arc;
 
 /// Products by which the largest eigenvalue of D⁻¹ A is estimated.
@@ -19,17 +20,7 @@ const SAFE: f32 = 1.05;
 /// Relative addition to the diagonal of coarse matrices: aggregates of points on a line turn about it without resistance.
 const SHIFT: f32 = 1e-5;
 
-/// The nodes of one level.
-#[derive(Debug)]
-pub(super) struct Mesh {
-    /// Places of its nodes.
-    points: Points,
-    pub(super) matrix: MeshMatrix,
-    /// Transfer to the next coarser level; none of the coarsest.
-    transfer: Option<Aggregation>,
-}
-
-impl Hierarchy<Mesh> {
+impl Hierarchy<Aggregation> {
     /// The levels of a mesh without matrices.
     pub(super) fn of_mesh(mesh: &NodeMesh) -> Self {
         let rows = BlockRows::of_elements(mesh.places.len(), &mesh.elements);
@@ -39,25 +30,18 @@ impl Hierarchy<Mesh> {
     }
 
     /// The levels without matrices of scalars at the nodes of a mesh, a component each; `free` has a bit for each one without a given value.
-    pub(super) fn of_scalars(finest: &Mesh, free: Vec<u8>) -> Self {
-        let rows = finest.matrix.rows.clone();
-        Self::from(rows, free, finest.points.of_scalars(), None)
+    pub(super) fn of_scalars(&self, free: Vec<u8>) -> Self {
+        let rows = self.levels[0].matrix.rows.clone();
+        Self::from(rows, free, self.nodes.of_scalars(), None)
     }
 
     fn from(
         mut rows: Arc<BlockRows>,
         mut free: Vec<u8>,
-        mut points: Points,
+        finest: Points,
         mut elements: Option<MeshElements>,
     ) -> Self {
-        let level = |rows, points, transfer, free, elements| {
-            let mesh = Mesh {
-                matrix: MeshMatrix::new(rows),
-                points,
-                transfer,
-            };
-            Level::new(mesh, free, elements)
-        };
+        let mut points = finest.clone();
         let mut levels = Vec::new();
         while free.len() > COARSEST {
             let aggregates = points.aggregate(&rows, &free);
@@ -69,7 +53,8 @@ impl Hierarchy<Mesh> {
             let (transfer, next_rows) = Aggregation::new(&rows, aggregates);
             let coarse = |of: &mut MeshElements| of.coarse(&transfer, next_free.len());
             let next_elements = elements.as_mut().map(coarse);
-            levels.push(level(rows, points, Some(transfer), free, elements));
+            let slabs = Slab::whole(free.len());
+            levels.push(Level::new(rows, slabs, free, Some(transfer), elements));
             (rows, free, points) = (Arc::new(next_rows), next_free, next);
             elements = next_elements;
         }
@@ -77,57 +62,15 @@ impl Hierarchy<Mesh> {
         if let Some(elements) = &elements {
             rows = Arc::new(elements.with_nodes_coupled(&rows));
         }
-        levels.push(level(rows, points, None, free, elements));
-        Self::new(levels)
-    }
-}
-
-impl Mesh {
-    /// Transfer to the next coarser level.
-    fn transfer(&self) -> &Aggregation {
-        let transfer = self.transfer.as_ref();
-        transfer.expect("a coarser level has a transfer")
-    }
-
-    /// Product of a row.
-    fn product(&self, row: usize, x: &[AtNode]) -> AtNode {
-        let mut sum = AtNode::default();
-        add_all(&mut sum, self.matrix.lower(row), x);
-        add(&mut sum, self.matrix.diagonal(row), &x[row]);
-        add_all(&mut sum, self.matrix.upper(row), x);
-        sum
-    }
-
-    /// Leaves rows and columns of given values out, and makes the matrix regular.
-    fn hold(&mut self, free: &[u8]) {
-        self.matrix.each_mut(|row, column, block| {
-            for (entry, value) in block.iter_mut().enumerate() {
-                let at = [entry % COMPONENTS, entry / COMPONENTS];
-                if free[row] & 1 << at[0] == 0 || free[column] & 1 << at[1] == 0 {
-                    *value = 0.0;
-                } else if row == column && at[0] == at[1] {
-                    *value *= 1.0 + SHIFT;
-                }
-            }
-        });
-    }
-}
-
-/// Adds blocks times what they multiply.
-#[inline(always)]
-fn add_all<'m>(
-    sum: &mut AtNode,
-    couplings: impl Iterator<Item = (&'m Block, &'m u32)>,
-    x: &[AtNode],
-) {
-    for (block, column) in couplings {
-        add(sum, block, &x[*column as usize]);
+        let slabs = Slab::whole(free.len());
+        levels.push(Level::new(rows, slabs, free, None, elements));
+        Self::new(finest, levels)
     }
 }
 
 /// Estimates the largest eigenvalue of D⁻¹ A by powers of it.
-fn largest(level: &mut Level<Mesh>) -> f32 {
-    let (x, residual) = (level.x.nodes_mut(), level.residual.nodes_mut());
+fn largest(level: &mut Level<Aggregation>) -> f32 {
+    let (x, residual) = (&mut level.x, &mut level.residual);
     for (node, x) in x.iter_mut().enumerate() {
         *x = std::array::from_fn(|component| match level.free[node] & (1 << component) {
             0 => 0.0,
@@ -138,7 +81,7 @@ fn largest(level: &mut Level<Mesh>) -> f32 {
     for _ in 0..PRODUCTS {
         let before = length(x);
         for (node, (residual, inverse)) in residual.iter_mut().zip(&level.inverse).enumerate() {
-            let product = level.nodes.product(node, x);
+            let product = level.matrix.product(node, x);
             *residual = AtNode::default();
             add(residual, inverse, &product);
         }
@@ -155,110 +98,49 @@ fn largest(level: &mut Level<Mesh>) -> f32 {
     largest
 }
 
-impl Nodes for Mesh {
+impl Transfer for Aggregation {
     type Elements = MeshElements;
+    type Nodes = Points;
+    const OF_DIAGONAL: f32 = 1.0 + SHIFT;
 
-    fn field<T: Copy + Default>(&self) -> Field<T> {
-        Field::of_mesh(self.matrix.rows.count())
-    }
-
-    fn diagonal(&self, node: usize) -> &Block {
-        self.matrix.diagonal(node)
-    }
-
-    fn coarsen(fine: &mut Level<Self>, coarse: &mut Level<Self>) {
+    fn coarsen(fine: &mut Level<Self>, coarse: &mut BlockMatrix) {
         let damping = DAMPING / (SAFE * largest(fine));
-        let Self {
-            matrix, transfer, ..
-        } = &mut fine.nodes;
-        let transfer = transfer.as_mut().expect("a coarser level has a transfer");
-        transfer.prepare(matrix, &fine.inverse, damping, &mut coarse.nodes.matrix);
-        coarse.nodes.hold(&coarse.free);
-        if let (Some(from), Some(to)) = (&fine.pressures, &mut coarse.pressures) {
-            from.coarsen(transfer, &coarse.free, to);
-        }
+        let transfer = fine.transfer.as_mut();
+        let transfer = transfer.expect("a coarser level has a transfer");
+        transfer.prepare(&fine.matrix, &fine.inverse, damping, coarse);
     }
 
-    fn forward(&mut self, inverse: &[Block], rhs: &Field, x: &mut Field) {
-        let (x, rhs) = (x.nodes_mut(), rhs.nodes());
-        for node in 0..x.len() {
-            let mut sum = AtNode::default();
-            add_all(&mut sum, self.matrix.lower(node), x);
-            x[node] = solved(&inverse[node], &rhs[node], &sum);
-        }
-    }
-
-    fn leave(&self, is_changed: bool, rhs: &Field, x: &Field, residual: &mut Field) {
-        let (x, rhs, residual) = (x.nodes(), rhs.nodes(), residual.nodes_mut());
-        let half = residual.len() / 2;
-        let (lower, upper) = residual.split_at_mut(half);
-        let leave = |first: usize, residual: &mut [AtNode]| {
-            for (node, residual) in (first..).zip(residual) {
-                *residual = match is_changed {
-                    true => {
-                        let product = self.product(node, x);
-                        std::array::from_fn(|c| rhs[node][c] - product[c])
-                    }
-                    false => {
-                        let mut sum = AtNode::default();
-                        add_all(&mut sum, self.matrix.upper(node), x);
-                        sum.map(|s| -s)
-                    }
-                };
-            }
-        };
-        join(|| leave(0, lower), || leave(half, upper));
-    }
-
-    fn backward(&mut self, inverse: &[Block], rhs: &Field, x: &mut Field) {
-        let (x, rhs) = (x.nodes_mut(), rhs.nodes());
-        for node in (0..x.len()).rev() {
-            let mut sum = AtNode::default();
-            add_all(&mut sum, self.matrix.upper(node).rev(), x);
-            add_all(&mut sum, self.matrix.lower(node).rev(), x);
-            x[node] = solved(&inverse[node], &rhs[node], &sum);
-        }
-    }
-
-    fn restrict(&self, residual: &Field, _coarse: &Self, rhs: &mut Field) {
-        let (transfer, residual) = (self.transfer(), residual.nodes());
-        for (rhs, children) in rhs.nodes_mut().iter_mut().zip(&transfer.children) {
+    fn restrict(&self, residual: &[AtNode], rhs: &mut [AtNode]) {
+        for (rhs, children) in rhs.iter_mut().zip(&self.children) {
             *rhs = AtNode::default();
             for &[row, block] in children {
-                let weights = &transfer.values[block as usize];
+                let weights = &self.values[block as usize];
                 add_transposed(rhs, weights, &residual[row as usize]);
             }
         }
     }
 
-    fn correct(&self, x: &mut Field, _coarse: &Self, correction: &Field) {
-        let (transfer, correction) = (self.transfer(), correction.nodes());
-        for (node, x) in x.nodes_mut().iter_mut().enumerate() {
-            for block in transfer.pattern.range(node) {
-                let from = &correction[transfer.pattern.column(block)];
-                add(x, &transfer.values[block], from);
+    fn correct(&self, x: &mut [AtNode], correction: &[AtNode]) {
+        for (node, x) in x.iter_mut().enumerate() {
+            for block in self.pattern.range(node) {
+                let from = &correction[self.pattern.column(block)];
+                add(x, &self.values[block], from);
             }
         }
     }
 
-    fn blocks(&self) -> impl Iterator<Item = &Block> {
-        self.matrix.blocks()
+    fn blocks(&self) -> usize {
+        self.values.len() + self.of_products.len() + 2 * self.rigid.len()
     }
+}
 
-    fn find(&self, row: usize, column: usize) -> Option<usize> {
-        self.matrix.rows.find(row, column)
-    }
-
-    fn visit(&self, mut visit: impl FnMut(usize, [usize; 2], &Block)) {
-        let entries = self.matrix.rows.entries();
-        for (number, (block, (row, column))) in self.blocks().zip(entries).enumerate() {
-            visit(number, [row, column], block);
+impl Interpolation for Aggregation {
+    fn each_parent(&self, node: usize, slopes: &AtNode, mut visit: impl FnMut(usize, AtNode)) {
+        for block in self.pattern.range(node) {
+            let mut moved = AtNode::default();
+            add_transposed(&mut moved, &self.values[block], slopes);
+            visit(self.pattern.column(block), moved);
         }
-    }
-
-    fn count(&self) -> usize {
-        let of_transfer = self.transfer.as_ref().map_or(0, Aggregation::blocks);
-        self.matrix.rows.blocks() + of_transfer
     }
 }
 

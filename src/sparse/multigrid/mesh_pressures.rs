@@ -3,8 +3,8 @@
 //! Elements with a node in common are neighbours; an aggregate has one pressure, and the sums of volumes and compliances.
 
 use crate::sparse::multigrid::aggregation::{Aggregation, Points};
-use crate::sparse::multigrid::node_grid::{AtNode, Block, COMPONENTS, Field, add, add_transposed};
-use crate::sparse::multigrid::pressures::{Elements, Pressures};
+use crate::sparse::multigrid::node_grid::{AtNode, Block, add, add_transposed};
+use crate::sparse::multigrid::pressures::{Elements, Field};
 use crate::sparse::multigrid::triangles::{BlockRows, NodeMesh};
 use std::ops::Range;
 
@@ -88,8 +88,8 @@ impl MeshElements {
 }
 
 impl Elements for MeshElements {
-    fn field(&self) -> Field<f32> {
-        Field::of_mesh(self.pattern.count())
+    fn field(&self) -> Field {
+        Field::new(self.pattern.count(), 0)
     }
 
     fn slopes(&self) -> usize {
@@ -105,6 +105,11 @@ impl Elements for MeshElements {
     fn nodes(&self, element: usize) -> impl Iterator<Item = usize> {
         let nodes = self.pattern.columns(element).iter();
         nodes.map(|node| *node as usize)
+    }
+
+    fn of_node(&self, node: usize) -> impl Iterator<Item = usize> {
+        let elements = self.of_nodes[node].iter();
+        elements.map(|[element, _]| *element as usize)
     }
 
     fn parent(&self, element: usize) -> usize {
@@ -139,7 +144,7 @@ impl Elements for MeshElements {
     }
 
     #[inline(always)]
-    fn product(&self, element: usize, x: &Field<f32>) -> f32 {
+    fn product(&self, element: usize, x: &Field) -> f32 {
         let entries = self.schur[self.neighbours.range(element)].iter();
         let products = entries.zip(self.neighbours.columns(element));
         products
@@ -151,51 +156,5 @@ impl Elements for MeshElements {
         let of_slopes = size_of::<AtNode>() + size_of::<[u32; 3]>();
         let of_schur = size_of::<[u32; 2]>() * self.schur.len();
         of_slopes * self.slopes() + of_schur + 40 * self.pattern.count()
-    }
-}
-
-impl Pressures<MeshElements> {
-    /// Takes the volume of an element with these nodes.
-    pub(super) fn take(
-        &mut self,
-        element: usize,
-        nodes: &[usize; 8],
-        slopes: &[AtNode; 8],
-        compliance: f32,
-    ) {
-        self.compliance[element] = compliance;
-        for (node, slopes) in nodes.iter().zip(slopes) {
-            let place = self.elements.pattern.find(element, *node);
-            self.slopes[place.expect("a node of the element")] = *slopes;
-        }
-    }
-
-    /// Writes the slopes and compliances of the next coarser level; `free` has a bit for each component of its nodes that moves.
-    pub(super) fn coarsen(&self, transfer: &Aggregation, free: &[u8], coarse: &mut Self) {
-        coarse.slopes.fill(AtNode::default());
-        coarse.compliance.fill(0.0);
-        for (element, compliance) in self.compliance.iter().enumerate() {
-            if *compliance == 0.0 {
-                continue;
-            }
-            let parent = self.elements.parent(element);
-            coarse.compliance[parent] += compliance;
-            for place in self.elements.range(element) {
-                let slopes = &self.slopes[place];
-                for weights in transfer.pattern.range(self.elements.pattern.column(place)) {
-                    let node = transfer.pattern.column(weights);
-                    let to = coarse.elements.pattern.find(parent, node);
-                    let to = &mut coarse.slopes[to.expect("a node of the aggregate")];
-                    let block = &transfer.values[weights];
-                    for (component, sum) in to.iter_mut().enumerate() {
-                        let column = &block[COMPONENTS * component..][..COMPONENTS];
-                        let moved = column.iter().zip(slopes).map(|(a, b)| a * b);
-                        if free[node] & 1 << component != 0 {
-                            *sum += moved.sum::<f32>();
-                        }
-                    }
-                }
-            }
-        }
     }
 }

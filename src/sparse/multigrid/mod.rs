@@ -9,6 +9,7 @@
 mod aggregation;
 mod grid;
 mod grid_pressures;
+mod halves;
 mod krylov;
 mod level;
 mod lobpcg;

@@ -4,6 +4,7 @@
 
 use nalgebra::Matrix4;
 use rustc_hash::FxHashMap;
+use std::ops::Range;
 
 /// Components of a node: three displacements and a potential.
 pub(super) const COMPONENTS: usize = 4;
@@ -46,16 +47,32 @@ const ONE: u64 = 1 | 1 << BITS | 1 << (2 * BITS);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct GridNode {
     number: u32,
+    /// Number of the block with a neighbour below in all directions, as if all before it were there.
+    block: u32,
+    /// Numbers of planes with neighbours along the first two axes.
+    widths: [u8; 2],
     /// Indices of its planes, where it has some; boxes stand one above the other, and do not touch.
     code: u64,
 }
 
 impl GridNode {
-    /// The node with this number at these planes.
-    pub(super) fn new(number: usize, [x, y, z]: [usize; 3]) -> Self {
-        let [x, y, z] = [x, y, z].map(|plane| plane as u64);
+    /// A node of a box with planes along each axis at these indices; its row begins with a block, and `below` planes belong to other boxes.
+    pub(super) fn on_box(
+        number: usize,
+        block: usize,
+        counts: [usize; 3],
+        at: [usize; 3],
+        below: usize,
+    ) -> Self {
+        let planes = [0, 1, 2].map(|axis| near(counts[axis], at[axis]));
+        let widths = [0, 1].map(|axis| planes[axis].len());
+        let missing = [0, 1, 2].map(|axis| planes[axis].start + 1 - at[axis]);
+        let before = missing[0] + widths[0] * (missing[1] + widths[1] * missing[2]);
+        let [x, y, z] = [at[0], at[1], below + at[2]].map(|plane| plane as u64);
         Self {
             number: number as u32,
+            block: (block as u32).wrapping_sub(before as u32),
+            widths: widths.map(|width| width as u8),
             code: x | y << BITS | z << (2 * BITS),
         }
     }
@@ -69,8 +86,15 @@ impl GridNode {
     pub(super) fn of_mesh(number: usize) -> Self {
         Self {
             number: number as u32,
+            block: 0,
+            widths: [0; 2],
             code: u64::MAX,
         }
+    }
+
+    /// Returns true if it is a node of a box.
+    pub(super) fn is_on_box(self) -> bool {
+        self.code != u64::MAX
     }
 
     /// Number of the block of its rows and the columns of another node of a box; `None` where they are no neighbours.
@@ -79,9 +103,10 @@ impl GridNode {
         let steps = other.code.wrapping_sub(self.code).wrapping_add(ONE);
         let [x, y] = [steps, steps >> BITS].map(|step| step & ((1 << BITS) - 1));
         let z = steps >> (2 * BITS);
+        let [width_x, width_y] = self.widths.map(u64::from);
         let is_neighbour = x <= 2 && y <= 2 && z <= 2;
-        let neighbour = (9 * z + 3 * y + x) as usize;
-        is_neighbour.then(|| NEIGHBOURS * self.number as usize + neighbour)
+        let place = (x + width_x * (y + width_y * z)) as u32;
+        is_neighbour.then(|| self.block.wrapping_add(place) as usize)
     }
 }
 
@@ -103,26 +128,9 @@ pub(super) fn node_at([n_x, n_y, _]: [usize; 3], [x, y, z]: [usize; 3]) -> usize
     x + n_x * (y + n_y * z)
 }
 
-/// Position among the neighbours of a node of the one at these indices; `None` where it is no neighbour.
-pub(super) fn neighbour(of: [usize; 3], other: [usize; 3]) -> Option<usize> {
-    let mut place = 0;
-    for axis in [2, 1, 0] {
-        let step = (other[axis] + 1).checked_sub(of[axis])?;
-        if step > 2 {
-            return None;
-        }
-        place = 3 * place + step;
-    }
-    Some(place)
-}
-
-/// Distance in the numbering of nodes to each neighbour.
-pub(super) fn offsets([n_x, n_y, _]: [usize; 3]) -> [isize; NEIGHBOURS] {
-    let (n_x, n_xy) = (n_x as isize, (n_x * n_y) as isize);
-    std::array::from_fn(|place| {
-        let step = |divisor: usize| (place / divisor % 3) as isize - 1;
-        step(1) + n_x * step(3) + n_xy * step(9)
-    })
+/// Planes next to one of so many, and itself.
+pub(super) fn near(planes: usize, plane: usize) -> Range<usize> {
+    plane.saturating_sub(1)..planes.min(plane + 2)
 }
 
 /// Corners of an element; the bits of the number of one say which it is along each axis.
@@ -191,14 +199,6 @@ impl VolumePlaces {
         }
     }
 
-    /// The element of a box of which a node is a corner; `None` where there is none, and of a mesh.
-    pub(super) fn of_corner(&self, node: usize, corner: usize) -> Option<usize> {
-        match self {
-            Self::Box(steps) => node.checked_sub(steps[corner]),
-            Self::Mesh(..) => None,
-        }
-    }
-
     /// The element with these nodes that move, by corner; of several that are still to be found any will do.
     pub(super) fn find(
         &self,
@@ -246,43 +246,6 @@ pub(super) type Block = [f32; COMPONENTS * COMPONENTS];
 
 /// Values of the components of a node.
 pub(super) type AtNode = [f32; COMPONENTS];
-
-/// Values at the nodes: as a rule those of the components in single precision.
-#[derive(Clone, Debug)]
-pub(super) struct Field<T = AtNode> {
-    pub(super) values: Vec<T>,
-    pub(super) margin: usize,
-}
-
-impl<T: Copy + Default> Field<T> {
-    /// Zero at all nodes of a grid.
-    pub(super) fn new([n_x, n_y, n_z]: [usize; 3]) -> Self {
-        let margin = n_x * n_y + n_x + 1;
-        Self {
-            values: vec![T::default(); n_x * n_y * n_z + 2 * margin],
-            margin,
-        }
-    }
-
-    /// Zero at so many nodes of a mesh, whose neighbours all have a place.
-    pub(super) fn of_mesh(count: usize) -> Self {
-        Self {
-            values: vec![T::default(); count],
-            margin: 0,
-        }
-    }
-
-    /// The nodes without the margins.
-    pub(super) fn nodes(&self) -> &[T] {
-        &self.values[self.margin..self.values.len() - self.margin]
-    }
-
-    /// The nodes without the margins.
-    pub(super) fn nodes_mut(&mut self) -> &mut [T] {
-        let end = self.values.len() - self.margin;
-        &mut self.values[self.margin..end]
-    }
-}
 
 /// Adds a block times a vector.
 #[inline(always)]

@@ -1,14 +1,12 @@
 //! Box grids and meshes side by side: their matrix in double precision, by blocks, with its product and its preconditioner.
 
-use crate::math::join;
 use crate::sparse::Singular;
-use crate::sparse::multigrid::grid::Grid;
+use crate::sparse::multigrid::aggregation::Aggregation;
+use crate::sparse::multigrid::grid::Trilinear;
 use crate::sparse::multigrid::krylov::Operator;
-use crate::sparse::multigrid::level::{Hierarchy, Nodes};
-use crate::sparse::multigrid::mesh::Mesh;
+use crate::sparse::multigrid::level::Hierarchy;
 use crate::sparse::multigrid::node_grid::{
-    AtNode, Block, COMPONENTS, ENTRIES, Field, NEIGHBOURS, NodeBlock, NodeGrid, VolumePlaces,
-    add_double, corners, offsets,
+    AtNode, Block, COMPONENTS, ENTRIES, NodeBlock, NodeGrid, VolumePlaces, add_double, corners,
 };
 use crate::sparse::multigrid::triangles::{BlockPlaces, BlockRows, NodeMesh};
 use crate::sparse::multigrid::volumes::{Volumes, scale_of_mean};
@@ -18,8 +16,8 @@ use std::sync::Arc;
 /// The levels of a box or a mesh.
 #[derive(Debug)]
 pub(super) enum Part {
-    Box(Hierarchy<Grid>),
-    Mesh(Hierarchy<Mesh>),
+    Box(Hierarchy<Trilinear>),
+    Mesh(Hierarchy<Aggregation>),
 }
 
 /// Evaluates an expression of the levels of a part, whatever they are.
@@ -36,49 +34,35 @@ impl Part {
     /// Number of planes along each axis; `None` of a mesh.
     pub(super) fn counts(&self) -> Option<[usize; 3]> {
         match self {
-            Self::Box(one) => Some(one.levels[0].nodes.counts),
+            Self::Box(one) => Some(one.nodes.each_ref().map(Vec::len)),
             Self::Mesh(_) => None,
         }
     }
 
     /// Pattern of the matrix.
-    pub(super) fn pattern(&self) -> Pattern<'_> {
-        match self {
-            Self::Box(one) => Pattern::Grid(one.levels[0].nodes.counts),
-            Self::Mesh(one) => Pattern::Rows(&one.levels[0].nodes.matrix.rows),
-        }
+    pub(super) fn rows(&self) -> &Arc<BlockRows> {
+        of_levels!(self, one => &one.levels[0].matrix.rows)
     }
 
     /// The levels without matrices of scalars at the same nodes, a component each; `free` has a bit for each one without a given value.
     pub(super) fn of_scalars(&self, free: Vec<u8>) -> Self {
         match self {
             Self::Box(one) => {
-                Self::Box(Hierarchy::between(&one.levels[0].nodes.planes, free, false))
+                let rows = self.rows().clone();
+                Self::Box(Hierarchy::between(&one.nodes, rows, free, false))
             }
-            Self::Mesh(one) => Self::Mesh(Hierarchy::of_scalars(&one.levels[0].nodes, free)),
+            Self::Mesh(one) => Self::Mesh(one.of_scalars(free)),
         }
     }
 
-    /// Writes the blocks of the finest matrix, which count by node and neighbour.
+    /// Writes the blocks of the finest matrix, which count row by row.
     pub(super) fn write(&mut self, of: impl Fn(usize) -> Block) {
-        match self {
-            Self::Box(one) => one.levels[0].nodes.matrix.rows_mut().write(|node, row| {
-                for (neighbour, block) in row.iter_mut().enumerate() {
-                    *block = of(NEIGHBOURS * node + neighbour);
-                }
-            }),
-            Self::Mesh(one) => one.levels[0].nodes.matrix.write(of),
-        }
+        of_levels!(self, one => one.levels[0].matrix.write(of));
     }
 
     /// For each node, a bit for each component without a given value.
     pub(super) fn free(&self) -> &[u8] {
         of_levels!(self, one => &one.levels[0].free)
-    }
-
-    /// Zero at all nodes.
-    pub(super) fn field<T: Copy + Default>(&self) -> Field<T> {
-        of_levels!(self, one => one.levels[0].nodes.field())
     }
 
     /// Makes the matrices of all levels from that of the finest one.
@@ -93,22 +77,18 @@ impl Part {
 
     /// Its right-hand side.
     pub(super) fn rhs_mut(&mut self) -> &mut [AtNode] {
-        of_levels!(self, one => one.levels[0].rhs.nodes_mut())
+        of_levels!(self, one => &mut one.levels[0].rhs)
     }
 
     /// Its solution.
-    pub(super) fn x(&self) -> &Field {
+    pub(super) fn x(&self) -> &[AtNode] {
         of_levels!(self, one => &one.levels[0].x)
-    }
-
-    fn x_mut(&mut self) -> &mut [AtNode] {
-        of_levels!(self, one => one.levels[0].x.nodes_mut())
     }
 
     /// The right-hand side of pressures; nothing where there are none.
     fn rhs_of_pressures_mut(&mut self) -> &mut [f32] {
         of_levels!(self, one => match &mut one.levels[0].pressures {
-            Some(pressures) => pressures.rhs.nodes_mut(),
+            Some(pressures) => pressures.rhs.inner_mut(),
             None => &mut [],
         })
     }
@@ -116,102 +96,9 @@ impl Part {
     /// The pressures; nothing where there are none.
     fn pressures(&self) -> &[f32] {
         of_levels!(self, one => match &one.levels[0].pressures {
-            Some(pressures) => pressures.p.nodes(),
+            Some(pressures) => pressures.p.inner(),
             None => &[],
         })
-    }
-}
-
-/// Pattern of the matrix of a part.
-pub(super) enum Pattern<'p> {
-    /// Number of planes along each axis: blocks count by node and neighbour.
-    Grid([usize; 3]),
-    Rows(&'p Arc<BlockRows>),
-}
-
-impl Pattern<'_> {
-    /// Number of blocks.
-    fn blocks(&self) -> usize {
-        match self {
-            Self::Grid(counts) => NEIGHBOURS * counts.iter().product::<usize>(),
-            Self::Rows(rows) => rows.blocks(),
-        }
-    }
-
-    /// Calls `visit` with number, row and column of each block.
-    pub(super) fn each(&self, mut visit: impl FnMut(usize, [usize; 2])) {
-        match self {
-            Self::Grid(counts) => {
-                let (nodes, offsets) = (counts.iter().product(), offsets(*counts));
-                for node in 0..nodes {
-                    for (neighbour, offset) in offsets.iter().enumerate() {
-                        let other = node.checked_add_signed(*offset);
-                        if let Some(other) = other.filter(|other| *other < nodes) {
-                            visit(NEIGHBOURS * node + neighbour, [node, other]);
-                        }
-                    }
-                }
-            }
-            Self::Rows(rows) => {
-                for (number, (row, column)) in rows.entries().enumerate() {
-                    visit(number, [row, column]);
-                }
-            }
-        }
-    }
-
-    /// Number of the block across the diagonal of one with this number, row and column.
-    pub(super) fn transposed(&self, number: usize, [row, column]: [usize; 2]) -> usize {
-        match self {
-            Self::Grid(..) => NEIGHBOURS * (column + 1) - 1 - number % NEIGHBOURS,
-            Self::Rows(rows) => {
-                let found = rows.find(column, row);
-                found.expect("neighbours are so both ways")
-            }
-        }
-    }
-
-    /// Writes products of the rows, both halves at once: `add` adds that of a block and what stands at a node.
-    #[inline]
-    pub(super) fn multiply<B: Sync, X: Sync, Y: Default + Send>(
-        &self,
-        blocks: &[B],
-        x: &Field<X>,
-        product: &mut [Y],
-        add: impl Fn(&mut Y, &B, &X) + Sync,
-    ) {
-        let half = product.len() / 2;
-        let (lower, upper) = product.split_at_mut(half);
-        match self {
-            Self::Grid(counts) => {
-                let offsets = offsets(*counts);
-                let rows = |first: usize, product: &mut [Y]| {
-                    for (row, product) in (first..).zip(product) {
-                        let at = (row + x.margin) as isize;
-                        let mut sum = Y::default();
-                        let blocks = &blocks[NEIGHBOURS * row..][..NEIGHBOURS];
-                        for (block, offset) in blocks.iter().zip(&offsets) {
-                            add(&mut sum, block, &x.values[(at + offset) as usize]);
-                        }
-                        *product = sum;
-                    }
-                };
-                join(|| rows(0, lower), || rows(half, upper));
-            }
-            Self::Rows(pattern) => {
-                let rows = |first: usize, product: &mut [Y]| {
-                    for (row, product) in (first..).zip(product) {
-                        let mut sum = Y::default();
-                        let blocks = blocks[pattern.range(row)].iter();
-                        for (block, column) in blocks.zip(pattern.columns(row)) {
-                            add(&mut sum, block, &x.values[*column as usize]);
-                        }
-                        *product = sum;
-                    }
-                };
-                join(|| rows(0, lower), || rows(half, upper));
-            }
-        }
     }
 }
 
@@ -260,11 +147,8 @@ impl Parts {
         for (part, one) in list.iter().enumerate() {
             let (node, block) = (starts[part], first_blocks[part]);
             starts.push(node + one.free().len());
-            first_blocks.push(block + one.pattern().blocks());
-            match one.pattern() {
-                Pattern::Grid(..) => places.of_boxes = starts[part + 1],
-                Pattern::Rows(rows) => places.meshes.push((node, block, rows.clone())),
-            }
+            first_blocks.push(block + one.rows().blocks());
+            places.parts.push((node, block, one.rows().clone()));
         }
         Self {
             matrix: vec![[0.0; ENTRIES]; first_blocks[list.len()]],
@@ -362,12 +246,12 @@ impl Parts {
         let mut sum = 0.0;
         for (part, one) in self.list.iter().enumerate() {
             let (x, blocks) = (&x[self.nodes(part)], &self.matrix[self.blocks(part)]);
-            one.pattern().each(|number, [node, other]| {
-                for (column, value) in blocks[number].chunks_exact(COMPONENTS).zip(&x[other]) {
+            for (block, (node, other)) in blocks.iter().zip(one.rows().entries()) {
+                for (column, value) in block.chunks_exact(COMPONENTS).zip(&x[other]) {
                     let along: f64 = column.iter().zip(&x[node]).map(|(a, x)| a * x).sum();
                     sum += along * value;
                 }
-            });
+            }
         }
         sum
     }
@@ -378,13 +262,8 @@ impl Parts {
             let blocks = self.blocks(part);
             let (blocks, one) = (&self.matrix[blocks], &mut self.list[part]);
             one.write(|block| blocks[block].map(|entry| entry as f32));
-            match one {
-                Part::Box(one) => self.volumes.take_out(part, blocks, &mut one.levels[0]),
-                Part::Mesh(one) => {
-                    self.volumes
-                        .take_out_of_mesh(part, blocks, &mut one.levels[0]);
-                }
-            }
+            let volumes = &mut self.volumes;
+            of_levels!(one, one => volumes.take_out(part, blocks, &mut one.levels[0]));
             one.prepare()?;
         }
         Ok(())
@@ -396,12 +275,10 @@ impl Operator for Parts {
         for part in 0..self.list.len() {
             let nodes = self.nodes(part);
             let own = COMPONENTS * nodes.start..COMPONENTS * nodes.end;
-            let field = self.list[part].x_mut().as_flattened_mut();
-            field.copy_from_slice(&x[own.clone()]);
-            let (one, blocks) = (&self.list[part], &self.matrix[self.blocks(part)]);
+            let (rows, blocks) = (self.list[part].rows(), &self.matrix[self.blocks(part)]);
+            let (x_of_part, _) = x[own.clone()].as_chunks();
             let (product_of_part, _) = product[own].as_chunks_mut();
-            one.pattern()
-                .multiply(blocks, one.x(), product_of_part, add_double);
+            rows.multiply(blocks, x_of_part, product_of_part, add_double::<f32>);
             self.volumes.apply(part, nodes.start, x, product);
         }
     }
@@ -422,7 +299,7 @@ impl Operator for Parts {
                 *value = *r as f32;
             }
             one.cycle();
-            x[own].copy_from_slice(one.x().nodes().as_flattened());
+            x[own].copy_from_slice(one.x().as_flattened());
             x[of_pressures].copy_from_slice(one.pressures());
         }
     }

@@ -2,7 +2,7 @@
 
 use crate::math::{IsOver, Stopped};
 use crate::sparse::Singular;
-use crate::sparse::multigrid::node_grid::{Block, COMPONENTS, ENTRIES, Field};
+use crate::sparse::multigrid::node_grid::{Block, COMPONENTS, ENTRIES};
 use crate::sparse::multigrid::parts::{Part, Parts};
 
 /// Component of the potential.
@@ -24,7 +24,7 @@ pub(super) struct Potentials {
     /// First entry of each part, and the number of all.
     first_entries: Vec<usize>,
     matrix: Vec<f64>,
-    direction: Vec<Field<Values>>,
+    direction: Vec<Values>,
     residual: Vec<Values>,
     corrections: Vec<Values>,
     products: Vec<Values>,
@@ -57,7 +57,7 @@ impl Potentials {
         }
         let zero = || vec![Values::default(); parts.node_count()];
         Ok(Some(Self {
-            direction: parts.fields(),
+            direction: zero(),
             starts: parts.starts.clone(),
             first_entries: parts.first_blocks.clone(),
             residual: zero(),
@@ -121,42 +121,33 @@ impl Potentials {
 
     /// Directions of the next step: corrections and a part of the last directions.
     fn turn(&mut self, factor: &Values) {
-        for (part, field) in self.direction.iter_mut().enumerate() {
-            let corrections = &self.corrections[self.starts[part]..];
-            for (direction, correction) in field.nodes_mut().iter_mut().zip(corrections) {
-                *direction = std::array::from_fn(|v| correction[v] + factor[v] * direction[v]);
-            }
+        for (direction, correction) in self.direction.iter_mut().zip(&self.corrections) {
+            *direction = std::array::from_fn(|v| correction[v] + factor[v] * direction[v]);
         }
     }
 
     /// Multiplies the directions; returns their products with the results.
     fn multiply(&mut self) -> Values {
+        let mut along = Values::default();
         for (part, one) in self.list.iter().enumerate() {
             let nodes = self.starts[part]..self.starts[part + 1];
             let entries = &self.matrix[self.first_entries[part]..];
-            let (field, products) = (&self.direction[part], &mut self.products[nodes]);
-            one.pattern().multiply(entries, field, products, add);
-        }
-        let mut along = Values::default();
-        for (part, field) in self.direction.iter().enumerate() {
-            let products = &self.products[self.starts[part]..];
-            let of_part = dot(field.nodes(), products);
+            let direction = &self.direction[nodes.clone()];
+            let products = &mut self.products[nodes];
+            one.rows().multiply(entries, direction, products, add);
+            let of_part = dot(direction, products);
             along = std::array::from_fn(|v| along[v] + of_part[v]);
         }
         along
     }
 
     fn step(&mut self, step: &Values) {
-        for (part, field) in self.direction.iter().enumerate() {
-            let nodes = self.starts[part]..self.starts[part + 1];
-            let lists = self.solution[nodes.clone()].iter_mut();
-            let lists = lists.zip(&mut self.residual[nodes.clone()]);
-            let lists = lists.zip(&self.products[nodes]).zip(field.nodes());
-            for (((solution, residual), product), direction) in lists {
-                for v in 0..COMPONENTS {
-                    solution[v] += step[v] * direction[v];
-                    residual[v] -= step[v] * product[v];
-                }
+        let lists = self.solution.iter_mut().zip(&mut self.residual);
+        let lists = lists.zip(&self.products).zip(&self.direction);
+        for (((solution, residual), product), direction) in lists {
+            for v in 0..COMPONENTS {
+                solution[v] += step[v] * direction[v];
+                residual[v] -= step[v] * product[v];
             }
         }
     }
@@ -169,7 +160,7 @@ impl Potentials {
             }
             one.cycle();
             let corrections = self.corrections[nodes].iter_mut();
-            for (to, from) in corrections.zip(one.x().nodes()) {
+            for (to, from) in corrections.zip(one.x()) {
                 *to = from.map(f64::from);
             }
         }

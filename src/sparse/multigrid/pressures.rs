@@ -12,7 +12,7 @@
 //! gradients with symmetric sweeps solve for q: pressures whose signs alternate from element to element hardly move anything, and sweeps
 //! alone leave them.
 
-use crate::sparse::multigrid::node_grid::{AtNode, Block, COMPONENTS, Field, NodeBlock, add};
+use crate::sparse::multigrid::node_grid::{AtNode, Block, COMPONENTS, CORNERS, NodeBlock, add};
 use std::fmt::Debug;
 use std::ops::Range;
 
@@ -21,10 +21,44 @@ const RESIDUAL: f64 = 0.1;
 /// Iterations for one correction.
 const LIMIT: usize = 40;
 
+/// Values of elements, with room for neighbours beyond the first and the last ones.
+#[derive(Clone, Debug)]
+pub(super) struct Field {
+    pub(super) values: Vec<f32>,
+    pub(super) margin: usize,
+}
+
+impl Field {
+    /// Zero for so many elements.
+    pub(super) fn new(count: usize, margin: usize) -> Self {
+        Self {
+            values: vec![0.0; count + 2 * margin],
+            margin,
+        }
+    }
+
+    /// The elements without the margins.
+    pub(super) fn inner(&self) -> &[f32] {
+        &self.values[self.margin..self.values.len() - self.margin]
+    }
+
+    /// The elements without the margins.
+    pub(super) fn inner_mut(&mut self) -> &mut [f32] {
+        let end = self.values.len() - self.margin;
+        &mut self.values[self.margin..end]
+    }
+}
+
+/// Interpolation from the next coarser level.
+pub(super) trait Interpolation {
+    /// Calls `visit` with each coarse node from which a node is interpolated, and what becomes there of a derivative by the place of the node.
+    fn each_parent(&self, node: usize, slopes: &AtNode, visit: impl FnMut(usize, AtNode));
+}
+
 /// Elements of a level, with the matrix S between their pressures.
 pub(super) trait Elements: Debug {
     /// Zero for each element.
-    fn field(&self) -> Field<f32>;
+    fn field(&self) -> Field;
 
     /// Number of derivatives of all volumes by places of nodes.
     fn slopes(&self) -> usize;
@@ -34,6 +68,9 @@ pub(super) trait Elements: Debug {
 
     /// Nodes of an element, in the order of its derivatives.
     fn nodes(&self, element: usize) -> impl Iterator<Item = usize>;
+
+    /// Elements of a node, in the order in which their volumes are taken out of its row.
+    fn of_node(&self, node: usize) -> impl Iterator<Item = usize>;
 
     /// Element of the next coarser level that one is a part of.
     fn parent(&self, element: usize) -> usize;
@@ -45,7 +82,7 @@ pub(super) trait Elements: Debug {
     fn diagonal(&self, element: usize) -> f32;
 
     /// Product of one row of S.
-    fn product(&self, element: usize, x: &Field<f32>) -> f32;
+    fn product(&self, element: usize, x: &Field) -> f32;
 
     /// Bytes of its lists and of those of pressures.
     fn bytes(&self) -> usize;
@@ -62,15 +99,15 @@ pub(super) struct Pressures<E> {
     /// Inverse of the diagonal of S; zero where there is no element.
     inverse: Vec<f32>,
     /// g.
-    pub(super) rhs: Field<f32>,
-    pub(super) p: Field<f32>,
-    residual: Field<f32>,
-    correction: Field<f32>,
+    pub(super) rhs: Field,
+    pub(super) p: Field,
+    residual: Field,
+    correction: Field,
     /// The correction that a sweep makes of the residual.
-    swept: Field<f32>,
-    direction: Field<f32>,
+    swept: Field,
+    direction: Field,
     /// S times the direction.
-    product: Field<f32>,
+    product: Field,
 }
 
 fn dot(a: &[f32], b: &[f32]) -> f64 {
@@ -89,7 +126,7 @@ fn dot(a: &[f32], b: &[f32]) -> f64 {
 impl<E: Elements> Pressures<E> {
     /// Pressures without values.
     pub(super) fn new(elements: E) -> Self {
-        let count = elements.field().nodes().len();
+        let count = elements.field().inner().len();
         Self {
             slopes: vec![AtNode::default(); elements.slopes()],
             compliance: vec![0.0; count],
@@ -105,6 +142,22 @@ impl<E: Elements> Pressures<E> {
         }
     }
 
+    /// Takes the volume of an element with these nodes.
+    pub(super) fn take(
+        &mut self,
+        element: usize,
+        nodes: &[usize; CORNERS],
+        slopes: &[AtNode; CORNERS],
+        compliance: f32,
+    ) {
+        self.compliance[element] = compliance;
+        let first = self.elements.range(element).start;
+        for (node, slopes) in nodes.iter().zip(slopes) {
+            let place = self.elements.nodes(element).position(|own| own == *node);
+            self.slopes[first + place.expect("a node of the element")] = *slopes;
+        }
+    }
+
     /// Makes S, with the inverse of its diagonal.
     pub(super) fn prepare(&mut self, blocks: &[Block]) {
         self.elements.couple(&self.slopes, &self.compliance, blocks);
@@ -117,11 +170,46 @@ impl<E: Elements> Pressures<E> {
         }
     }
 
+    /// Writes the slopes and compliances of the next coarser level, where an element takes in those that it consists of; `free` has a bit for
+    /// each component of its nodes that moves.
+    pub(super) fn coarsen(
+        &self,
+        interpolation: &impl Interpolation,
+        free: &[u8],
+        coarse: &mut Self,
+    ) {
+        coarse.slopes.fill(AtNode::default());
+        coarse.compliance.fill(0.0);
+        for (element, compliance) in self.compliance.iter().enumerate() {
+            if *compliance == 0.0 {
+                continue;
+            }
+            let parent = self.elements.parent(element);
+            coarse.compliance[parent] += compliance;
+            let first = coarse.elements.range(parent).start;
+            let places = self
+                .elements
+                .range(element)
+                .zip(self.elements.nodes(element));
+            for (place, node) in places {
+                interpolation.each_parent(node, &self.slopes[place], |node, moved| {
+                    let to = coarse.elements.nodes(parent).position(|own| own == node);
+                    let to = &mut coarse.slopes[first + to.expect("a node of the element")];
+                    for (component, sum) in to.iter_mut().enumerate() {
+                        if free[node] & 1 << component != 0 {
+                            *sum += moved[component];
+                        }
+                    }
+                });
+            }
+        }
+    }
+
     /// Makes its residual the right-hand side of the next coarser level.
     pub(super) fn restrict(&self, coarse: &mut Self) {
-        let sums = coarse.rhs.nodes_mut();
+        let sums = coarse.rhs.inner_mut();
         sums.fill(0.0);
-        let residuals = self.residual.nodes().iter().zip(&self.compliance);
+        let residuals = self.residual.inner().iter().zip(&self.compliance);
         for (element, (residual, compliance)) in residuals.enumerate() {
             if *compliance != 0.0 {
                 sums[self.elements.parent(element)] += residual;
@@ -131,21 +219,21 @@ impl<E: Elements> Pressures<E> {
 
     /// Adds the pressures of the next coarser level.
     pub(super) fn add_coarse(&mut self, coarse: &Self) {
-        let lists = self.p.nodes_mut().iter_mut().zip(&self.compliance);
+        let lists = self.p.inner_mut().iter_mut().zip(&self.compliance);
         for (element, (p, compliance)) in lists.enumerate() {
             if *compliance != 0.0 {
-                *p += coarse.p.nodes()[self.elements.parent(element)];
+                *p += coarse.p.inner()[self.elements.parent(element)];
             }
         }
     }
 
     /// B x of one element.
     #[inline(always)]
-    fn along(&self, element: usize, x: &Field) -> f32 {
+    fn along(&self, element: usize, x: &[AtNode]) -> f32 {
         let mut sums = AtNode::default();
         let slopes = self.slopes[self.elements.range(element)].iter();
         for (slopes, node) in slopes.zip(self.elements.nodes(element)) {
-            let there = &x.values[x.margin + node];
+            let there = &x[node];
             for (sum, (slope, x)) in sums.iter_mut().zip(slopes.iter().zip(there)) {
                 *sum += slope * x;
             }
@@ -154,16 +242,15 @@ impl<E: Elements> Pressures<E> {
     }
 
     /// Adds −Bᵀ p to a field.
-    pub(super) fn subtract_forces(&self, to: &mut Field) {
+    pub(super) fn subtract_forces(&self, to: &mut [AtNode]) {
         self.subtract(&self.p, to);
     }
 
-    fn subtract(&self, p: &Field<f32>, to: &mut Field) {
-        for (element, p) in p.nodes().iter().enumerate() {
+    fn subtract(&self, p: &Field, to: &mut [AtNode]) {
+        for (element, p) in p.inner().iter().enumerate() {
             let slopes = self.slopes[self.elements.range(element)].iter();
             for (slopes, node) in slopes.zip(self.elements.nodes(element)) {
-                let there = &mut to.values[to.margin + node];
-                for (sum, slope) in there.iter_mut().zip(slopes) {
+                for (sum, slope) in to[node].iter_mut().zip(slopes) {
                     *sum -= slope * p;
                 }
             }
@@ -171,18 +258,18 @@ impl<E: Elements> Pressures<E> {
     }
 
     /// Writes g − B x + C p.
-    pub(super) fn leave(&mut self, x: &Field) {
+    pub(super) fn leave(&mut self, x: &[AtNode]) {
         for element in 0..self.compliance.len() {
             let along = self.along(element, x);
-            let compliance = self.compliance[element] * self.p.nodes()[element];
-            self.residual.nodes_mut()[element] = self.rhs.nodes()[element] - along + compliance;
+            let compliance = self.compliance[element] * self.p.inner()[element];
+            self.residual.inner_mut()[element] = self.rhs.inner()[element] - along + compliance;
         }
     }
 
     /// Adds Bᵀ C⁻¹ g to forces, which makes them those of displacements alone.
-    pub(super) fn condense(&mut self, forces: &mut Field) {
-        let lists = self.rhs.nodes().iter().zip(&self.compliance);
-        for (p, (rhs, compliance)) in self.correction.nodes_mut().iter_mut().zip(lists) {
+    pub(super) fn condense(&mut self, forces: &mut [AtNode]) {
+        let lists = self.rhs.inner().iter().zip(&self.compliance);
+        for (p, (rhs, compliance)) in self.correction.inner_mut().iter_mut().zip(lists) {
             *p = match *compliance == 0.0 {
                 true => 0.0,
                 false => -(rhs / compliance),
@@ -192,10 +279,10 @@ impl<E: Elements> Pressures<E> {
     }
 
     /// Makes pressures those that belong to displacements.
-    pub(super) fn follow(&mut self, x: &Field) {
+    pub(super) fn follow(&mut self, x: &[AtNode]) {
         for element in 0..self.compliance.len() {
-            let change = self.along(element, x) - self.rhs.nodes()[element];
-            self.p.nodes_mut()[element] = match self.compliance[element] == 0.0 {
+            let change = self.along(element, x) - self.rhs.inner()[element];
+            self.p.inner_mut()[element] = match self.compliance[element] == 0.0 {
                 true => 0.0,
                 false => change / self.compliance[element],
             };
@@ -227,22 +314,22 @@ impl<E: Elements> Pressures<E> {
     }
 
     /// Corrects pressures, and displacements; `forces` is overwritten, `blocks` are the inverse of the diagonal ones.
-    pub(super) fn correct(&mut self, x: &mut Field, blocks: &[Block], forces: &mut Field) {
+    pub(super) fn correct(&mut self, x: &mut [AtNode], blocks: &[Block], forces: &mut [AtNode]) {
         self.leave(x);
         self.solve();
         for (p, q) in self.p.values.iter_mut().zip(&self.correction.values) {
             *p += q;
         }
-        forces.values.fill(AtNode::default());
+        forces.fill(AtNode::default());
         self.subtract(&self.correction, forces);
-        for ((x, force), block) in x.nodes_mut().iter_mut().zip(forces.nodes()).zip(blocks) {
+        for ((x, force), block) in x.iter_mut().zip(&*forces).zip(blocks) {
             add(x, block, force);
         }
     }
 
     /// Solves S q = −residual; the residual is lost.
     fn solve(&mut self) {
-        let residual = self.residual.nodes_mut().iter_mut();
+        let residual = self.residual.inner_mut().iter_mut();
         residual.for_each(|value| *value = -*value);
         self.correction.values.fill(0.0);
         let mut square = self.sweep();
@@ -251,17 +338,17 @@ impl<E: Elements> Pressures<E> {
         for _ in 0..LIMIT {
             for element in 0..self.compliance.len() {
                 let product = self.elements.product(element, &self.direction);
-                self.product.nodes_mut()[element] = product;
+                self.product.inner_mut()[element] = product;
             }
-            let (direction, product) = (self.direction.nodes(), self.product.nodes());
+            let (direction, product) = (self.direction.inner(), self.product.inner());
             let factor = square / dot(direction, product);
             // Nothing is left, or nothing can be said.
             if !factor.is_finite() {
                 break;
             }
             let factor = factor as f32;
-            let corrections = self.correction.nodes_mut().iter_mut();
-            let both = corrections.zip(self.residual.nodes_mut());
+            let corrections = self.correction.inner_mut().iter_mut();
+            let both = corrections.zip(self.residual.inner_mut());
             for ((q, residual), (direction, product)) in both.zip(direction.iter().zip(product)) {
                 *q += factor * direction;
                 *residual -= factor * product;
@@ -271,8 +358,8 @@ impl<E: Elements> Pressures<E> {
                 break;
             }
             let ratio = (next / square) as f32;
-            let directions = self.direction.nodes_mut().iter_mut();
-            for (direction, swept) in directions.zip(self.swept.nodes()) {
+            let directions = self.direction.inner_mut().iter_mut();
+            for (direction, swept) in directions.zip(self.swept.inner()) {
                 *direction = swept + ratio * *direction;
             }
             square = next;
@@ -288,13 +375,13 @@ impl<E: Elements> Pressures<E> {
         for element in (0..self.compliance.len()).rev() {
             self.relax(element);
         }
-        dot(self.residual.nodes(), self.swept.nodes())
+        dot(self.residual.inner(), self.swept.inner())
     }
 
     /// Solves the equation of one element.
     #[inline(always)]
     fn relax(&mut self, element: usize) {
-        let left = self.residual.nodes()[element] - self.elements.product(element, &self.swept);
-        self.swept.nodes_mut()[element] += self.inverse[element] * left;
+        let left = self.residual.inner()[element] - self.elements.product(element, &self.swept);
+        self.swept.inner_mut()[element] += self.inverse[element] * left;
     }
 }

@@ -9,7 +9,8 @@ use crate::math::{IsOver, Stopped};
 use crate::sparse::Singular;
 use crate::sparse::multigrid::krylov::{Iterated, Krylov, norm};
 use crate::sparse::multigrid::node_grid::{
-    COMPONENTS, CORNERS, ENTRIES, ElementVolume, GridNode, NodeBlock, NodeGrid, PLANES, indices,
+    COMPONENTS, CORNERS, ENTRIES, ElementVolume, GridNode, NEIGHBOURS, NodeBlock, NodeGrid, PLANES,
+    indices,
 };
 use crate::sparse::multigrid::parts::{Part, Parts, products};
 use crate::sparse::multigrid::stiffness::{LowestModes, Workspace, lowest_modes};
@@ -98,7 +99,7 @@ impl Multigrid {
         let planes = grids.iter().map(NodeGrid::counts);
         let across = planes.clone().flat_map(|[x, y, _]| [x, y]).max();
         let above: usize = planes.map(|[_, _, z]| z + 2).sum();
-        if nodes > NONE as usize / COMPONENTS || across.max(Some(above)) > Some(PLANES) {
+        if nodes > NONE as usize / NEIGHBOURS || across.max(Some(above)) > Some(PLANES) {
             return None;
         }
         let parts = Parts::new(grids, meshes);
@@ -139,8 +140,10 @@ impl Multigrid {
         };
         let planes = list[..part].iter().filter_map(Part::counts);
         let below: usize = planes.map(|[_, _, z]| z + 2).sum();
-        let [x, y, z] = indices(counts, node - starts[part]);
-        Some((GridNode::new(node, [x, y, below + z]), component))
+        let local = node - starts[part];
+        let block = self.parts.first_blocks[part] + list[part].rows().range(local).start;
+        let at = indices(counts, local);
+        Some((GridNode::on_box(node, block, counts, at, below), component))
     }
 
     /// Place of an entry among [`values_mut`](Self::values_mut); `None` where it couples what are no neighbours, or something that is held.
@@ -431,13 +434,13 @@ impl Parts {
     pub(super) fn symmetrise(&mut self) {
         for (part, one) in self.list.iter().enumerate() {
             let blocks = &mut self.matrix[self.first_blocks[part]..self.first_blocks[part + 1]];
-            let pattern = one.pattern();
-            pattern.each(|here, [node, other]| {
+            let rows = one.rows();
+            for (here, (node, other)) in rows.entries().enumerate() {
                 if node <= other {
-                    let there = pattern.transposed(here, [node, other]);
-                    symmetrise_pair(blocks, here, there);
+                    let there = rows.find(other, node);
+                    symmetrise_pair(blocks, here, there.expect("neighbours are so both ways"));
                 }
-            });
+            }
         }
     }
 }

@@ -6,7 +6,7 @@ use crate::math::{IsOver, Random, Stopped};
 use crate::sparse::Singular;
 use crate::sparse::multigrid::krylov::Krylov;
 use crate::sparse::multigrid::lobpcg::{AtNode, COUNT, Pairs, SymmetricMatrix, lowest};
-use crate::sparse::multigrid::node_grid::{COMPONENTS, Field, NodeBlock, add_double};
+use crate::sparse::multigrid::node_grid::{COMPONENTS, NodeBlock, add_double};
 use crate::sparse::multigrid::parts::{Part, Parts};
 use crate::sparse::multigrid::potentials::{POTENTIAL, Potentials};
 
@@ -53,7 +53,7 @@ struct Stiffness<'p> {
     parts: &'p mut Parts,
     factor: f64,
     rounding: f64,
-    fields: Vec<Field<AtNode>>,
+    vectors: Vec<AtNode>,
     by_potentials: Vec<AtNode>,
     potentials: Option<Potentials>,
     workspace: Workspace<'p>,
@@ -91,7 +91,7 @@ pub(super) fn lowest_modes(
         start.push(at);
     }
     let mut stiffness = Stiffness {
-        fields: parts.fields(),
+        vectors: vec![AtNode::default(); start.len()],
         by_potentials: vec![AtNode::default(); if potentials.is_some() { start.len() } else { 0 }],
         rounding: ROUNDING * factor.abs() * parts.largest_diagonal(),
         potentials,
@@ -118,11 +118,6 @@ impl Parts {
         largest
     }
 
-    /// Zero at the nodes of each part.
-    pub(super) fn fields<T: Copy + Default>(&self) -> Vec<Field<T>> {
-        self.list.iter().map(Part::field).collect()
-    }
-
     /// For each node, a bit for each component without a given value.
     pub(super) fn free(&self) -> impl Iterator<Item = u8> {
         self.list.iter().flat_map(Part::free).copied()
@@ -130,12 +125,13 @@ impl Parts {
 }
 
 impl Stiffness<'_> {
-    /// Multiplies the vectors in the fields.
+    /// Multiplies the vectors.
     fn multiply(&self, product: &mut [AtNode]) {
         for (part, one) in self.parts.list.iter().enumerate() {
             let blocks = &self.parts.matrix[self.parts.blocks(part)];
-            let (field, product) = (&self.fields[part], &mut product[self.parts.nodes(part)]);
-            one.pattern().multiply(blocks, field, product, add);
+            let nodes = self.parts.nodes(part);
+            let (vectors, product) = (&self.vectors[nodes.clone()], &mut product[nodes]);
+            one.rows().multiply(blocks, vectors, product, add);
         }
     }
 
@@ -160,20 +156,17 @@ impl Stiffness<'_> {
         let Some(relative) = potentials.solve(rhs, is_over)? else {
             return Ok(None);
         };
-        for (part, field) in self.fields.iter_mut().enumerate() {
-            let found = &potentials.solution[self.parts.starts[part]..];
-            for (at, found) in field.nodes_mut().iter_mut().zip(found) {
-                for (vector, potential) in at.iter_mut().zip(found) {
-                    *vector = [0.0; COMPONENTS];
-                    vector[POTENTIAL] = *potential;
-                }
+        for (at, found) in self.vectors.iter_mut().zip(&potentials.solution) {
+            for (vector, potential) in at.iter_mut().zip(found) {
+                *vector = [0.0; COMPONENTS];
+                vector[POTENTIAL] = *potential;
             }
         }
         let mut added = std::mem::take(&mut self.by_potentials);
         self.multiply(&mut added);
         let mut squares = [0.0; COUNT];
         for (part, scales) in self.parts.scales.iter().enumerate() {
-            let nodes = self.parts.starts[part]..self.parts.starts[part + 1];
+            let nodes = self.parts.nodes(part);
             for (product, added) in product[nodes.clone()].iter_mut().zip(&added[nodes]) {
                 for v in 0..COUNT {
                     for c in 0..POTENTIAL {
@@ -200,10 +193,9 @@ impl SymmetricMatrix for Stiffness<'_> {
         if is_over() {
             return Err(Stopped);
         }
-        for (part, field) in self.fields.iter_mut().enumerate() {
-            let scales = &self.parts.scales[part];
-            let x = &x[self.parts.starts[part]..];
-            for (to, from) in field.nodes_mut().iter_mut().zip(x) {
+        for (part, scales) in self.parts.scales.iter().enumerate() {
+            let nodes = self.parts.nodes(part);
+            for (to, from) in self.vectors[nodes.clone()].iter_mut().zip(&x[nodes]) {
                 *to = from.map(|vector| std::array::from_fn(|c| vector[c] / scales[c]));
             }
         }
@@ -212,7 +204,7 @@ impl SymmetricMatrix for Stiffness<'_> {
             return Ok(None);
         };
         for (part, scales) in self.parts.scales.iter().enumerate() {
-            let nodes = self.parts.starts[part]..self.parts.starts[part + 1];
+            let nodes = self.parts.nodes(part);
             for vector in product[nodes].as_flattened_mut() {
                 for c in 0..POTENTIAL {
                     vector[c] *= self.factor / scales[c];
@@ -256,7 +248,7 @@ impl Stiffness<'_> {
                 *to = std::array::from_fn(|c| (unit * from[v][c] * scales[c]) as f32);
             }
             one.cycle();
-            for (to, from) in x[nodes].iter_mut().zip(one.x().nodes()) {
+            for (to, from) in x[nodes].iter_mut().zip(one.x()) {
                 to[v] = std::array::from_fn(|c| f64::from(from[c]) * scales[c]);
                 to[v][POTENTIAL] = 0.0;
             }
@@ -280,7 +272,7 @@ impl Stiffness<'_> {
         } = &mut self.workspace;
         rhs.fill(0.0);
         for (part, scales) in self.parts.scales.iter().enumerate() {
-            for node in self.parts.starts[part]..self.parts.starts[part + 1] {
+            for node in self.parts.nodes(part) {
                 for c in 0..POTENTIAL {
                     rhs[COMPONENTS * node + c] = unit * r[node][v][c] * scales[c];
                 }
@@ -289,7 +281,7 @@ impl Stiffness<'_> {
         let iterated = krylov.solve(self.parts, rhs, found, OF_CORRECTION, is_over)?;
         **iterations += iterated.iterations;
         for (part, scales) in self.parts.scales.iter().enumerate() {
-            for node in self.parts.starts[part]..self.parts.starts[part + 1] {
+            for node in self.parts.nodes(part) {
                 let found = &found[COMPONENTS * node..];
                 x[node][v] = std::array::from_fn(|c| found[c] * scales[c]);
                 x[node][v][POTENTIAL] = 0.0;

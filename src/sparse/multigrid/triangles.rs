@@ -1,157 +1,17 @@
 //! The matrix of one level in single precision by triangles: blocks of each node with the neighbours before it, with itself, and with those
-//! behind it.
+//! behind it; and the pattern of its rows.
 //!
 //! A sweep reads a triangle from one end to the other. In one list of all rows it would leave out half of each, which takes four times as
 //! long.
-//!
-//! The pattern of a sparse matrix of blocks, row by row.
-//!
-//! The matrix of one level of a mesh in single precision, with the pattern of its rows.
 
-use crate::sparse::multigrid::node_grid::{Block, COMPONENTS, GridNode, NEIGHBOURS, OWN};
+use crate::math::join;
+use crate::sparse::multigrid::node_grid::{
+    AtNode, Block, COMPONENTS, GridNode, add, indices, near, node_at,
+};
 use std::cmp::Ordering;
 use std::ops::Range;
 use std::slice::IterMut;
 use std::sync::Arc;
-
-/// A row of the matrix of a grid, by neighbour.
-pub(super) type Row = [Block; NEIGHBOURS];
-
-/// Blocks by row; on a grid those of neighbours beyond it are zero.
-#[derive(Debug)]
-pub(super) struct Triangles {
-    lower: Vec<Block>,
-    diagonal: Vec<Block>,
-    upper: Vec<Block>,
-}
-
-/// Blocks of some rows in a sequence that are to be written.
-pub(super) struct Rows<'m> {
-    lower: IterMut<'m, Block>,
-    diagonal: IterMut<'m, Block>,
-    upper: IterMut<'m, Block>,
-}
-
-impl Triangles {
-    /// Zero, with so many blocks on the diagonal and in either triangle.
-    pub(super) fn new(nodes: usize, [lower, upper]: [usize; 2]) -> Self {
-        Self {
-            lower: vec![Block::default(); lower],
-            diagonal: vec![Block::default(); nodes],
-            upper: vec![Block::default(); upper],
-        }
-    }
-
-    /// Zero for the nodes of a grid.
-    pub(super) fn of_grid(nodes: usize) -> Self {
-        Self::new(nodes, [OWN * nodes; 2])
-    }
-
-    /// Number of blocks.
-    pub(super) fn blocks(&self) -> usize {
-        self.lower.len() + self.diagonal.len() + self.upper.len()
-    }
-
-    /// Blocks of the lower triangle.
-    #[inline(always)]
-    pub(super) fn lower(&self, blocks: Range<usize>) -> &[Block] {
-        &self.lower[blocks]
-    }
-
-    /// The block of a node with itself.
-    #[inline(always)]
-    pub(super) fn diagonal(&self, node: usize) -> &Block {
-        &self.diagonal[node]
-    }
-
-    /// Blocks of the upper triangle.
-    #[inline(always)]
-    pub(super) fn upper(&self, blocks: Range<usize>) -> &[Block] {
-        &self.upper[blocks]
-    }
-
-    /// A row with these blocks of the lower and of the upper triangle, by column.
-    #[inline(always)]
-    pub(super) fn row(
-        &self,
-        node: usize,
-        [lower, upper]: [Range<usize>; 2],
-    ) -> impl Iterator<Item = &Block> {
-        let own = std::iter::once(&self.diagonal[node]);
-        self.lower[lower]
-            .iter()
-            .chain(own)
-            .chain(&self.upper[upper])
-    }
-
-    /// A row of a grid, by neighbour.
-    #[inline(always)]
-    pub(super) fn grid_row(&self, node: usize) -> impl Iterator<Item = &Block> {
-        let half = OWN * node..OWN * (node + 1);
-        self.row(node, [half.clone(), half])
-    }
-
-    /// All rows.
-    pub(super) fn rows_mut(&mut self) -> Rows<'_> {
-        Rows {
-            lower: self.lower.iter_mut(),
-            diagonal: self.diagonal.iter_mut(),
-            upper: self.upper.iter_mut(),
-        }
-    }
-}
-
-impl<'m> Rows<'m> {
-    /// The rows before a node, with so many blocks in either triangle, and the others.
-    pub(super) fn split_at(self, node: usize, [lower, upper]: [usize; 2]) -> [Self; 2] {
-        let split = |blocks: IterMut<'m, Block>, at: usize| {
-            let (before, behind) = blocks.into_slice().split_at_mut(at);
-            (before.iter_mut(), behind.iter_mut())
-        };
-        let (lower, lower_behind) = split(self.lower, lower);
-        let (diagonal, diagonal_behind) = split(self.diagonal, node);
-        let (upper, upper_behind) = split(self.upper, upper);
-        [
-            Self {
-                lower,
-                diagonal,
-                upper,
-            },
-            Self {
-                lower: lower_behind,
-                diagonal: diagonal_behind,
-                upper: upper_behind,
-            },
-        ]
-    }
-
-    /// The next block, row by row, of these row and column.
-    ///
-    /// # Panics
-    /// There are no more of its triangle.
-    pub(super) fn next(&mut self, row: usize, column: usize) -> &'m mut Block {
-        let next = match column.cmp(&row) {
-            Ordering::Less => self.lower.next(),
-            Ordering::Equal => self.diagonal.next(),
-            Ordering::Greater => self.upper.next(),
-        };
-        next.expect("blocks are those of the pattern")
-    }
-
-    /// Writes rows of a grid, whose numbers among these are handed over.
-    pub(super) fn write(self, mut row: impl FnMut(usize, &mut Row)) {
-        let mut blocks = [Block::default(); NEIGHBOURS];
-        let [lower, upper] =
-            [self.lower, self.upper].map(|triangle| triangle.into_slice().chunks_exact_mut(OWN));
-        let lists = lower.zip(self.diagonal).zip(upper);
-        for (number, ((lower, diagonal), upper)) in lists.enumerate() {
-            row(number, &mut blocks);
-            lower.copy_from_slice(&blocks[..OWN]);
-            *diagonal = blocks[OWN];
-            upper.copy_from_slice(&blocks[OWN + 1..]);
-        }
-    }
-}
 
 /// A mesh of hexahedra whose nodes are on no grid.
 #[derive(Clone, Debug, PartialEq)]
@@ -174,38 +34,37 @@ pub(super) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     squares.sum::<f64>().sqrt()
 }
 
-/// Places of the blocks of a matrix by node: those of boxes come first.
+/// Places of the blocks of a matrix by node.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BlockPlaces {
-    /// Number of nodes of boxes.
-    pub(super) of_boxes: usize,
-    /// First node and first block of each mesh, and its pattern.
-    pub(super) meshes: Vec<(usize, usize, Arc<BlockRows>)>,
+    /// First node and first block of each box and mesh, and its pattern.
+    pub(super) parts: Vec<(usize, usize, Arc<BlockRows>)>,
 }
 
 impl BlockPlaces {
     /// Number of the block of the rows of a node and the columns of another one; `None` where they are no neighbours.
     #[inline(always)]
     pub fn block(&self, row: GridNode, column: GridNode) -> Option<usize> {
-        let [row_number, column_number] = [row.number(), column.number()];
-        if row_number < self.of_boxes {
-            return match column_number < self.of_boxes {
-                true => row.neighbour_block(column),
-                false => None,
-            };
+        match [row, column].map(GridNode::is_on_box) {
+            [true, true] => row.neighbour_block(column),
+            [false, false] => {
+                let (first, block, rows) = self.part(row.number());
+                let column = column.number().checked_sub(*first)?;
+                Some(block + rows.find(row.number() - first, column)?)
+            }
+            _ => None,
         }
-        let part = self.meshes.iter().rfind(|mesh| mesh.0 <= row_number)?;
-        let (first, block, rows) = (part.0, part.1, &part.2);
-        let column = column_number.checked_sub(first)?;
-        Some(block + rows.find(row_number - first, column)?)
     }
 
     /// The block on the diagonal of a node.
     pub(super) fn diagonal(&self, node: usize) -> usize {
-        match self.meshes.iter().rfind(|mesh| mesh.0 <= node) {
-            Some((first, block, rows)) => block + rows.diagonal(node - first),
-            None => NEIGHBOURS * node + OWN,
-        }
+        let (first, block, rows) = self.part(node);
+        block + rows.diagonal(node - first)
+    }
+
+    fn part(&self, node: usize) -> &(usize, usize, Arc<BlockRows>) {
+        let part = self.parts.iter().rfind(|part| part.0 <= node);
+        part.expect("nodes belong to a part")
     }
 }
 
@@ -245,6 +104,23 @@ impl BlockRows {
             row.push(node as u32);
         }
         Self::new(rows.into_iter())
+    }
+
+    /// The pattern of the matrix that couples the nodes of each element of a box, with planes of nodes along each axis.
+    pub(super) fn of_box(counts: [usize; 3]) -> Self {
+        let (mut starts, mut columns) = (vec![0], Vec::new());
+        for node in 0..counts.iter().product() {
+            let at = indices(counts, node);
+            let [along_x, along_y, along_z] = [0, 1, 2].map(|axis| near(counts[axis], at[axis]));
+            for z in along_z {
+                for y in along_y.clone() {
+                    let of_line = along_x.clone();
+                    columns.extend(of_line.map(|x| node_at(counts, [x, y, z]) as u32));
+                }
+            }
+            starts.push(columns.len());
+        }
+        Self { starts, columns }
     }
 
     /// Number of rows.
@@ -315,6 +191,30 @@ impl BlockRows {
         }))
     }
 
+    /// Writes products of the rows, both halves at once: `add` adds that of a block and what stands at a node.
+    #[inline]
+    pub(super) fn multiply<B: Sync, X: Sync, Y: Default + Send>(
+        &self,
+        blocks: &[B],
+        x: &[X],
+        product: &mut [Y],
+        add: impl Fn(&mut Y, &B, &X) + Sync,
+    ) {
+        let half = product.len() / 2;
+        let (lower, upper) = product.split_at_mut(half);
+        let rows = |first: usize, product: &mut [Y]| {
+            for (row, product) in (first..).zip(product) {
+                let mut sum = Y::default();
+                let blocks = blocks[self.range(row)].iter();
+                for (block, column) in blocks.zip(self.columns(row)) {
+                    add(&mut sum, block, &x[*column as usize]);
+                }
+                *product = sum;
+            }
+        };
+        join(|| rows(0, lower), || rows(half, upper));
+    }
+
     /// Rows, and blocks, of each column of a number of columns.
     pub(super) fn by_column(&self, count: usize) -> Vec<Vec<[u32; 2]>> {
         let mut found = vec![Vec::new(); count];
@@ -327,26 +227,92 @@ impl BlockRows {
     }
 }
 
-/// A block with its column.
-type Coupling<'m> = (&'m Block, &'m u32);
+/// Blocks of a row with their columns.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Couplings<'m> {
+    blocks: &'m [Block],
+    pub(super) columns: &'m [u32],
+}
+
+impl Couplings<'_> {
+    /// The first ones.
+    #[inline(always)]
+    pub(super) fn before(self, place: usize) -> Self {
+        Self {
+            blocks: &self.blocks[..place],
+            columns: &self.columns[..place],
+        }
+    }
+
+    /// The others.
+    #[inline(always)]
+    pub(super) fn from(self, place: usize) -> Self {
+        Self {
+            blocks: &self.blocks[place..],
+            columns: &self.columns[place..],
+        }
+    }
+
+    /// Adds their products with what stands in a list from the node `first` on.
+    #[inline(always)]
+    pub(super) fn add_to(self, sum: &mut AtNode, first: usize, x: &[AtNode]) {
+        for (block, column) in self.blocks.iter().zip(self.columns) {
+            add(sum, block, &x[*column as usize - first]);
+        }
+    }
+
+    /// The same from the last one to the first.
+    #[inline(always)]
+    pub(super) fn add_backward_to(self, sum: &mut AtNode, first: usize, x: &[AtNode]) {
+        for (block, column) in self.blocks.iter().zip(self.columns).rev() {
+            add(sum, block, &x[*column as usize - first]);
+        }
+    }
+}
 
 /// A matrix with blocks by row.
 #[derive(Debug)]
-pub(super) struct MeshMatrix {
+pub(super) struct BlockMatrix {
     pub(super) rows: Arc<BlockRows>,
     /// First block of each row in the lower triangle, and the number of all.
     lower_starts: Vec<usize>,
-    blocks: Triangles,
+    lower: Vec<Block>,
+    diagonal: Vec<Block>,
+    upper: Vec<Block>,
 }
 
-impl MeshMatrix {
+/// Blocks of some rows in a sequence that are to be written.
+pub(super) struct Rows<'m> {
+    lower: IterMut<'m, Block>,
+    diagonal: IterMut<'m, Block>,
+    upper: IterMut<'m, Block>,
+}
+
+impl<'m> Rows<'m> {
+    /// The next block, row by row, of these row and column.
+    ///
+    /// # Panics
+    /// There are no more of its triangle.
+    pub(super) fn next(&mut self, row: usize, column: usize) -> &'m mut Block {
+        let next = match column.cmp(&row) {
+            Ordering::Less => self.lower.next(),
+            Ordering::Equal => self.diagonal.next(),
+            Ordering::Greater => self.upper.next(),
+        };
+        next.expect("blocks are those of the pattern")
+    }
+}
+
+impl BlockMatrix {
     /// Zero, with this pattern.
     pub(super) fn new(rows: Arc<BlockRows>) -> Self {
         let (nodes, lower_starts) = (rows.count(), rows.lower_starts());
         let lower = lower_starts[nodes];
-        let counts = [lower, rows.blocks() - nodes - lower];
+        let zero = |count: usize| vec![Block::default(); count];
         Self {
-            blocks: Triangles::new(nodes, counts),
+            lower: zero(lower),
+            diagonal: zero(nodes),
+            upper: zero(rows.blocks() - nodes - lower),
             lower_starts,
             rows,
         }
@@ -363,22 +329,50 @@ impl MeshMatrix {
 
     /// Calls `change` with row, column and block of each.
     pub(super) fn each_mut(&mut self, mut change: impl FnMut(usize, usize, &mut Block)) {
-        let mut rows = self.blocks.rows_mut();
+        let mut rows = Rows {
+            lower: self.lower.iter_mut(),
+            diagonal: self.diagonal.iter_mut(),
+            upper: self.upper.iter_mut(),
+        };
         for (row, column) in self.rows.entries() {
             change(row, column, rows.next(row, column));
         }
     }
 
+    /// Leaves rows and columns of given values out; `free` has a bit for each component of a node without one. Multiplies the diagonal.
+    pub(super) fn hold(&mut self, free: &[u8], of_diagonal: f32) {
+        self.each_mut(|row, column, block| {
+            for (entry, value) in block.iter_mut().enumerate() {
+                let at = [entry % COMPONENTS, entry / COMPONENTS];
+                if free[row] & 1 << at[0] == 0 || free[column] & 1 << at[1] == 0 {
+                    *value = 0.0;
+                } else if row == column && at[0] == at[1] {
+                    *value *= of_diagonal;
+                }
+            }
+        });
+    }
+
     /// Both halves of the rows.
     pub(super) fn in_two(&mut self) -> [Rows<'_>; 2] {
         let half = self.rows.count() / 2;
-        let before = self.halves(half).map(|blocks| blocks.start);
-        self.blocks.rows_mut().split_at(half, before)
+        let [lower, upper] = self.sides(half).map(|blocks| blocks.start);
+        let (a, b) = self.lower.split_at_mut(lower);
+        let (c, d) = self.diagonal.split_at_mut(half);
+        let (e, f) = self.upper.split_at_mut(upper);
+        [[a, c, e], [b, d, f]].map(|lists| {
+            let [lower, diagonal, upper] = lists.map(<[Block]>::iter_mut);
+            Rows {
+                lower,
+                diagonal,
+                upper,
+            }
+        })
     }
 
     /// Places of a row in the lower and in the upper triangle.
     #[inline(always)]
-    fn halves(&self, row: usize) -> [Range<usize>; 2] {
+    fn sides(&self, row: usize) -> [Range<usize>; 2] {
         let (start, end) = (self.rows.range(row).start, self.rows.range(row).end);
         let [lower, behind] = [self.lower_starts[row], self.lower_starts[row + 1]];
         [lower..behind, start - row - lower..end - row - 1 - behind]
@@ -387,7 +381,10 @@ impl MeshMatrix {
     /// The blocks of a row, by column.
     #[inline(always)]
     pub(super) fn row(&self, row: usize) -> impl Iterator<Item = &Block> {
-        self.blocks.row(row, self.halves(row))
+        let [lower, upper] = self.sides(row);
+        let own = std::iter::once(&self.diagonal[row]);
+        let lower = self.lower[lower].iter();
+        lower.chain(own).chain(&self.upper[upper])
     }
 
     /// All blocks row by row.
@@ -395,25 +392,34 @@ impl MeshMatrix {
         (0..self.rows.count()).flat_map(|row| self.row(row))
     }
 
-    /// Blocks of a row before the diagonal.
-    #[inline(always)]
-    pub(super) fn lower(&self, row: usize) -> impl DoubleEndedIterator<Item = Coupling<'_>> {
-        let [lower, _] = self.halves(row);
-        let columns = &self.rows.columns(row)[..lower.len()];
-        self.blocks.lower(lower).iter().zip(columns)
-    }
-
     /// The block on the diagonal.
     #[inline(always)]
     pub(super) fn diagonal(&self, row: usize) -> &Block {
-        self.blocks.diagonal(row)
+        &self.diagonal[row]
     }
 
-    /// Blocks of a row behind the diagonal.
+    /// Blocks of a row before the diagonal, and behind it.
     #[inline(always)]
-    pub(super) fn upper(&self, row: usize) -> impl DoubleEndedIterator<Item = Coupling<'_>> {
-        let [lower, upper] = self.halves(row);
-        let columns = &self.rows.columns(row)[lower.len() + 1..];
-        self.blocks.upper(upper).iter().zip(columns)
+    pub(super) fn couplings(&self, row: usize) -> [Couplings<'_>; 2] {
+        let [lower, upper] = self.sides(row);
+        let (before, behind) = self.rows.columns(row).split_at(lower.len());
+        let lists = [
+            (&self.lower[lower], before),
+            (&self.upper[upper], &behind[1..]),
+        ];
+        lists.map(|list| Couplings {
+            blocks: list.0,
+            columns: list.1,
+        })
+    }
+
+    /// Product of a row.
+    pub(super) fn product(&self, row: usize, x: &[AtNode]) -> AtNode {
+        let mut sum = AtNode::default();
+        let [before, behind] = self.couplings(row);
+        before.add_to(&mut sum, 0, x);
+        add(&mut sum, &self.diagonal[row], &x[row]);
+        behind.add_to(&mut sum, 0, x);
+        sum
     }
 }

@@ -3,12 +3,11 @@
 //! With the derivatives b of a volume and the factor k of b bᵀ in the matrix, a pressure p stands for k b·u: rows of displacements have
 //! b (p − k b·u) in addition, and p has the row b·u − p/k. Vectors hold the pressures behind the components of all nodes.
 
-use crate::sparse::multigrid::grid::Grid;
-use crate::sparse::multigrid::level::Level;
-use crate::sparse::multigrid::mesh::Mesh;
+use crate::sparse::multigrid::level::{Level, Transfer};
 use crate::sparse::multigrid::node_grid::{
-    COMPONENTS, CORNERS, ENTRIES, ElementVolume, NEIGHBOURS, NodeBlock, VolumePlaces, neighbour_of,
+    COMPONENTS, CORNERS, ElementVolume, NodeBlock, VolumePlaces,
 };
+use crate::sparse::multigrid::pressures::Elements;
 use std::ops::Range;
 
 /// The power of two, which rounds nothing, that makes a mean of squares one.
@@ -29,6 +28,8 @@ pub(super) struct Volumes {
     places: Vec<VolumePlaces>,
     /// Factors of pressures by part.
     scales: Vec<f64>,
+    /// Work space of one row.
+    rest: Vec<NodeBlock>,
 }
 
 impl Volumes {
@@ -119,61 +120,40 @@ impl Volumes {
         }
     }
 
-    /// Hands volumes over to the finest grid, whose matrix is that of the rest.
-    pub(super) fn take_out(&self, part: usize, blocks: &[NodeBlock], level: &mut Level<Grid>) {
-        let volumes = self.of(part);
-        let Some(pressures) = &mut level.pressures else {
-            return;
-        };
-        let slopes = pressures.slopes.chunks_exact_mut(CORNERS);
-        let lists = slopes.zip(&mut pressures.compliance);
-        for ((slopes, compliance), volume) in lists.zip(volumes) {
-            let (of_volume, compliance_of_volume) = volume.in_single_precision();
-            slopes.copy_from_slice(&of_volume);
-            *compliance = compliance_of_volume;
-        }
-        level.nodes.matrix.rows_mut().write(|node, row| {
-            let mut rest = [[0.0; ENTRIES]; NEIGHBOURS];
-            rest.copy_from_slice(&blocks[NEIGHBOURS * node..][..NEIGHBOURS]);
-            for corner in 0..CORNERS {
-                let element = self.places[part].of_corner(node, corner);
-                if let Some(volume) = element.and_then(|element| volumes.get(element)) {
-                    volume.take_from(corner, &mut rest);
-                }
-            }
-            for (to, from) in row.iter_mut().zip(&rest) {
-                *to = from.map(|entry| entry as f32);
-            }
-        });
-    }
-
-    /// Hands volumes over to the finest level of a mesh, whose matrix is that of the rest.
-    pub(super) fn take_out_of_mesh(
-        &self,
+    /// Hands volumes over to the finest level, whose matrix is that of the rest.
+    pub(super) fn take_out<T: Transfer>(
+        &mut self,
         part: usize,
         blocks: &[NodeBlock],
-        level: &mut Level<Mesh>,
+        level: &mut Level<T>,
     ) {
         let Some(pressures) = &mut level.pressures else {
             return;
         };
-        let mut rest = blocks.to_vec();
-        for (element, volume) in self.of(part).iter().enumerate() {
-            let nodes = self.places[part].corners(element);
+        let mut rest = std::mem::take(&mut self.rest);
+        let (volumes, places) = (self.of(part), &self.places[part]);
+        for (element, volume) in volumes.iter().enumerate() {
             let (slopes, compliance) = volume.in_single_precision();
-            pressures.take(element, &nodes, &slopes, compliance);
-            for (row, own) in nodes.iter().zip(&volume.slopes) {
-                for (column, there) in nodes.iter().zip(&volume.slopes) {
-                    let block = level.nodes.matrix.rows.find(*row, *column);
-                    let block = block.expect("nodes of an element are coupled");
-                    volume.take_block(own, there, &mut rest[block]);
+            pressures.take(element, &places.corners(element), &slopes, compliance);
+        }
+        let (rows, mut number) = (level.matrix.rows.clone(), 0);
+        level.matrix.each_mut(|node, _, block| {
+            let range = rows.range(node);
+            if number == range.start {
+                rest.clear();
+                rest.extend_from_slice(&blocks[range.clone()]);
+                for element in pressures.elements.of_node(node) {
+                    if let Some(volume) = volumes.get(element) {
+                        let corners = places.corners(element);
+                        let place = |column| rows.find(node, column).map(|at| at - range.start);
+                        volume.take_from(node, &corners, &mut rest, place);
+                    }
                 }
             }
-        }
-        level
-            .nodes
-            .matrix
-            .write(|block| rest[block].map(|entry| entry as f32));
+            *block = rest[number - range.start].map(|entry| entry as f32);
+            number += 1;
+        });
+        self.rest = rest;
     }
 
     /// Adds to a product what pressures do, and writes their rows; `node` is the first one of the part.
@@ -239,26 +219,24 @@ impl ElementVolume {
         }
     }
 
-    /// Leaves its part out of the row of a corner.
-    fn take_from(&self, corner: usize, row: &mut [[f64; ENTRIES]; NEIGHBOURS]) {
+    /// Leaves its part out of the row of a node at one of its corners, whose blocks are found by `place`.
+    fn take_from(
+        &self,
+        node: usize,
+        corners: &[usize; CORNERS],
+        row: &mut [NodeBlock],
+        place: impl Fn(usize) -> Option<usize>,
+    ) {
         if self.factor == 0.0 {
             return;
         }
-        let own = &self.slopes[corner];
-        for (other, there) in self.slopes.iter().enumerate() {
-            self.take_block(own, there, &mut row[neighbour_of(corner, other)]);
-        }
-    }
-
-    /// Leaves its part out of a block.
-    fn take_block(
-        &self,
-        own: &[f64; COMPONENTS],
-        there: &[f64; COMPONENTS],
-        block: &mut NodeBlock,
-    ) {
-        for (entry, value) in block.iter_mut().enumerate() {
-            *value -= self.factor * own[entry % COMPONENTS] * there[entry / COMPONENTS];
+        let of_node = corners.iter().position(|corner| *corner == node);
+        let own = &self.slopes[of_node.expect("a corner of the element")];
+        for (column, there) in corners.iter().zip(&self.slopes) {
+            let place = place(*column).expect("nodes of an element are coupled");
+            for (entry, value) in row[place].iter_mut().enumerate() {
+                *value -= self.factor * own[entry % COMPONENTS] * there[entry / COMPONENTS];
+            }
         }
     }
 }
