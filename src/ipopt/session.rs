@@ -85,11 +85,11 @@ impl Session {
         let unknowns = self.layouts.iter().find(|layout| layout.len() == order);
         let fits = |kept: &Kept| {
             let plan = kept.solver.plan();
-            let (known_rows, known_cols) = plan.pattern();
+            let known = plan.pattern();
             kept.unknowns.as_ref() == unknowns
                 && plan.order() == order
-                && from_zero(rows).eq(known_rows.iter().copied())
-                && from_zero(cols).eq(known_cols.iter().copied())
+                && from_zero(rows).eq(known.rows.iter().copied())
+                && from_zero(cols).eq(known.cols.iter().copied())
         };
         let kept = self.current.take().filter(fits);
         let kept = kept.or_else(|| KEPT.take().filter(fits));

@@ -345,6 +345,7 @@ impl Block {
 
 #[cfg(test)]
 mod tests {
+    use super::super::graph::Pattern;
     use super::*;
 
     #[test]
@@ -357,7 +358,11 @@ mod tests {
             (0..COUNT).flat_map(|i| near(i).map(move |j| (shuffled(i), COUNT + shuffled(j))));
         let (rows, cols): (Vec<u32>, Vec<u32>) = pairs.unzip();
         let progress = &mut Progress::new(&|| false);
-        let graph = Graph::new(2 * COUNT as usize, &rows, &cols, progress);
+        let pattern = Pattern {
+            rows: &rows,
+            cols: &cols,
+        };
+        let graph = Graph::new(2 * COUNT as usize, pattern, progress);
         let graph = graph.expect("nothing stops it");
         let before = Group {
             states: (COUNT..2 * COUNT).collect(),

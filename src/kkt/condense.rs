@@ -14,7 +14,7 @@ use crate::kkt::bandwidth_order::{Block, Item, arrange};
 use crate::kkt::eliminable_groups;
 use crate::kkt::eliminable_groups::Group;
 use crate::kkt::fronts::Fronts;
-use crate::kkt::graph::{Graph, Progress};
+use crate::kkt::graph::{Graph, Pattern, Progress};
 use crate::kkt::order::Unknown;
 use crate::math::{IsOver, Stopped};
 use std::collections::{BTreeMap, BTreeSet};
@@ -66,23 +66,18 @@ impl Condensation {
     pub(super) fn new(
         graph: &Graph,
         unknowns: &[Unknown],
-        (rows, cols): (&[u32], &[u32]),
+        pattern: Pattern<'_>,
         multiplications: f64,
         progress: &mut Progress<'_>,
     ) -> Result<Option<Self>, Stopped> {
         let most = WORTH * multiplications;
         let mut all = Vec::new();
         for choose in [eliminable_groups::constraints, eliminable_groups::squares] {
-            progress.add(rows.len())?;
+            progress.add(pattern.len())?;
             let mut groups = choose(graph, unknowns);
             arrange(graph, &mut groups, progress)?;
-            all.extend(Self::of_groups(
-                &groups,
-                unknowns,
-                (rows, cols),
-                most,
-                progress,
-            )?);
+            let condensed = Self::of_groups(&groups, unknowns, pattern, most, progress)?;
+            all.extend(condensed);
         }
         let all = all.into_iter();
         let cheapest = all.min_by(|(a, _), (b, _)| a.total_cmp(b));
@@ -93,7 +88,7 @@ impl Condensation {
     fn of_groups(
         groups: &[Group],
         unknowns: &[Unknown],
-        (rows, cols): (&[u32], &[u32]),
+        pattern: Pattern<'_>,
         most: f64,
         progress: &mut Progress<'_>,
     ) -> Result<Option<(f64, Self)>, Stopped> {
@@ -103,8 +98,8 @@ impl Condensation {
         }
         let mut out = Self::default();
         let kinds = out.number(groups, unknowns.len());
-        progress.add(rows.len())?;
-        if !out.sort(&kinds, rows, cols) {
+        progress.add(pattern.len())?;
+        if !out.sort(&kinds, pattern) {
             return Ok(None);
         }
         let mut kinds: Vec<Unknown> = out.rest.iter().map(|&i| unknowns[i as usize]).collect();
@@ -115,7 +110,7 @@ impl Condensation {
         if kinds.is_empty() {
             return Ok(None);
         }
-        out.merge(rows.len(), progress)?;
+        out.merge(pattern.len(), progress)?;
         out.reduce(&kinds, progress)?;
         let all = of_blocks + out.plans[0].multiplications();
         Ok((all < most).then_some((all, out)))
@@ -150,9 +145,9 @@ impl Condensation {
     }
 
     /// Gives each entry to a block, and returns true if no equation holds a state of a later group.
-    fn sort(&mut self, kinds: &[UnknownKind], rows: &[u32], cols: &[u32]) -> bool {
+    fn sort(&mut self, kinds: &[UnknownKind], pattern: Pattern<'_>) -> bool {
         let mut is_triangular = true;
-        for (entry, (&row, &col)) in rows.iter().zip(cols).enumerate() {
+        for (entry, (row, col)) in pattern.places().enumerate() {
             let (a, b) = (kinds[row as usize], kinds[col as usize]);
             let item = |row, column| Item {
                 value: entry as u32,
@@ -303,6 +298,10 @@ impl Condensation {
         }
         let rows: Vec<u32> = pairs.iter().map(|pair| pair.0).collect();
         let cols: Vec<u32> = pairs.iter().map(|pair| pair.1).collect();
+        let all = Pattern {
+            rows: &rows,
+            cols: &cols,
+        };
         let twice = pairs.iter().enumerate();
         let twice = twice.filter(|(_, pair)| pair.0 == pair.1 && pair.2);
         self.twice = twice.map(|(at, _)| at as u32).collect();
@@ -311,8 +310,8 @@ impl Condensation {
             false => vec![plain],
         };
         for length in lengths {
-            let (rows, cols) = (&rows[..length], &cols[..length]);
-            let (_, plan) = Fronts::new(kinds.len(), rows, cols, Some(kinds), progress)?;
+            let pattern = all.first(length);
+            let (_, plan) = Fronts::new(kinds.len(), pattern, Some(kinds), progress)?;
             self.plans.push(plan);
         }
         Ok(())
@@ -423,11 +422,11 @@ impl Plan {
             "a matrix of order {order}"
         );
         let progress = &mut Progress::new(is_over);
-        let (graph, fronts) = Fronts::new(order, rows, cols, unknowns, progress)?;
+        let pattern = Pattern { rows, cols };
+        let (graph, fronts) = Fronts::new(order, pattern, unknowns, progress)?;
         let multiplications = fronts.multiplications();
         let condensation = match unknowns {
             Some(unknowns) => {
-                let pattern = (rows, cols);
                 Condensation::new(&graph, unknowns, pattern, multiplications, progress)?
             }
             None => None,
@@ -446,7 +445,7 @@ impl Plan {
 
     /// Rows and columns of the entries.
     #[must_use]
-    pub fn pattern(&self) -> (&[u32], &[u32]) {
+    pub fn pattern(&self) -> Pattern<'_> {
         self.fronts.pattern()
     }
 

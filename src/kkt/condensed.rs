@@ -81,7 +81,7 @@ impl Condensed {
             .collect();
         let most = |size: fn(&Block) -> usize| parts.blocks.iter().map(size).max().unwrap_or(0);
         let plans = parts.plans.iter();
-        let entries = plans.map(|plan| plan.pattern().0.len()).max().unwrap_or(0);
+        let entries = plans.map(|plan| plan.pattern().len()).max().unwrap_or(0);
         Self {
             middle: middle(parts.blocks.iter().map(Block::multiplications)),
             rooms: [0, 1].map(|_| Room::for_blocks(&blocks)),
@@ -138,7 +138,7 @@ impl Condensed {
         }
         self.reduce(progress)?;
         let plan = &self.parts.plans[usize::from(self.has_diagonal)];
-        let entries = &self.entries[..plan.pattern().0.len()];
+        let entries = &self.entries[..plan.pattern().len()];
         if !entries.iter().all(|entry| entry.is_finite()) {
             return Ok(None);
         }
@@ -267,7 +267,7 @@ impl Condensed {
     fn reduce(&mut self, progress: &mut Progress<'_>) -> Result<(), Stopped> {
         progress.add(0)?;
         let (parts, middle) = (&self.parts.blocks, self.middle);
-        let plain = self.parts.plans[0].pattern().0.len();
+        let plain = self.parts.plans[0].pattern().len();
         let counts = [0..middle, middle..parts.len()].map(|half| {
             let of_half = parts[half].iter();
             of_half.fold([0, 0], |[responses, diagonals], part| {

@@ -92,7 +92,7 @@ impl Eliminate<'_, '_, '_> {
         if self.workspace.unscaled.len() < needed {
             self.workspace.unscaled.resize(needed, 0.0);
         }
-        while let Some(pivot) = self.front.choose(unit, self.rules, count.eliminated, end) {
+        while let Some(pivot) = self.front.choose(unit, self.rules, count.eliminated..end) {
             let q = count.eliminated;
             let unscaled = &mut self.workspace.unscaled[(q - begin) * stride..];
             match pivot {
@@ -126,7 +126,7 @@ impl Eliminate<'_, '_, '_> {
                 pivots,
             };
             let packed = &mut self.workspace.packed;
-            update(unit, packed, panel, right, (end, self.front.order));
+            update(unit, packed, panel, right, end..self.front.order);
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use super::graph::{Graph, Progress};
+use super::graph::{Graph, Pattern, Progress};
 use super::order::{self, Unknown};
 use super::tree::{self, Node};
 use crate::math::Stopped;
@@ -49,26 +49,25 @@ pub(super) struct Fronts {
 }
 
 impl Fronts {
-    /// For symmetric matrices of `order` unknowns with entries at `rows` and `cols`; with the graph of the pattern.
+    /// For symmetric matrices of `order` unknowns with these entries; with the graph of the pattern.
     pub(super) fn new(
         order: usize,
-        rows: &[u32],
-        cols: &[u32],
+        pattern: Pattern<'_>,
         unknowns: Option<&[Unknown]>,
         progress: &mut Progress<'_>,
     ) -> Result<(Graph, Self), Stopped> {
-        let graph = Graph::new(order, rows, cols, progress)?;
-        progress.add(rows.len())?;
+        let graph = Graph::new(order, pattern, progress)?;
+        progress.add(pattern.len())?;
         let elimination = order::elimination(&graph, unknowns);
         let nodes = tree::nodes(&graph, &elimination, progress)?;
         let mut fronts = Self {
             order,
-            rows: rows.to_vec(),
-            cols: cols.to_vec(),
+            rows: pattern.rows.to_vec(),
+            cols: pattern.cols.to_vec(),
             list: Vec::with_capacity(nodes.len()),
             unknowns: Vec::new(),
             children: Vec::new(),
-            entries: Vec::with_capacity(rows.len()),
+            entries: Vec::with_capacity(pattern.len()),
             places: Vec::new(),
         };
         fronts.lay_out(&nodes, progress)?;
@@ -81,8 +80,11 @@ impl Fronts {
     }
 
     /// Rows and columns of the entries.
-    pub(super) fn pattern(&self) -> (&[u32], &[u32]) {
-        (&self.rows, &self.cols)
+    pub(super) fn pattern(&self) -> Pattern<'_> {
+        Pattern {
+            rows: &self.rows,
+            cols: &self.cols,
+        }
     }
 
     /// Multiplications of a factorisation along the horizon without delays.

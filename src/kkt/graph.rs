@@ -2,6 +2,35 @@
 
 use crate::math::{IsOver, Stopped};
 
+/// Places of the entries of a symmetric matrix, of either triangle or both.
+#[derive(Clone, Copy, Debug)]
+pub struct Pattern<'a> {
+    /// Row of each entry.
+    pub rows: &'a [u32],
+    /// Column of each entry.
+    pub cols: &'a [u32],
+}
+
+impl<'a> Pattern<'a> {
+    /// Number of entries.
+    pub(super) const fn len(self) -> usize {
+        self.rows.len()
+    }
+
+    /// The first entries.
+    pub(super) fn first(self, count: usize) -> Self {
+        Self {
+            rows: &self.rows[..count],
+            cols: &self.cols[..count],
+        }
+    }
+
+    /// Row and column of each entry.
+    pub(super) fn places(self) -> impl Iterator<Item = (u32, u32)> + use<'a> {
+        self.rows.iter().copied().zip(self.cols.iter().copied())
+    }
+}
+
 /// Neighbours of each unknown in ascending order, itself left out.
 #[derive(Clone, Debug)]
 pub(super) struct Graph {
@@ -10,17 +39,16 @@ pub(super) struct Graph {
 }
 
 impl Graph {
-    /// The graph of a matrix of `order` unknowns with entries at `rows` and `cols`, of either triangle or both.
+    /// The graph of a matrix of `order` unknowns with these entries.
     pub(super) fn new(
         order: usize,
-        rows: &[u32],
-        cols: &[u32],
+        pattern: Pattern<'_>,
         progress: &mut Progress<'_>,
     ) -> Result<Self, Stopped> {
-        progress.add(rows.len())?;
+        progress.add(pattern.len())?;
         let mut starts = vec![0; order + 1];
-        let pairs = || rows.iter().zip(cols).filter(|(row, col)| row != col);
-        for (&row, &col) in pairs() {
+        let pairs = || pattern.places().filter(|(row, col)| row != col);
+        for (row, col) in pairs() {
             starts[row as usize + 1] += 1;
             starts[col as usize + 1] += 1;
         }
@@ -35,7 +63,7 @@ impl Graph {
             list[*place as usize] = to;
             *place += 1;
         };
-        for (&row, &col) in pairs() {
+        for (row, col) in pairs() {
             put(&mut mixed, row, col);
             put(&mut mixed, col, row);
         }

@@ -43,6 +43,7 @@ mod update;
 
 pub use crate::math::Stopped;
 pub use condense::Plan;
+pub use graph::Pattern;
 pub use order::Unknown;
 pub use pivot::Inertia;
 pub use solver::{Solver, Statistics};

@@ -97,7 +97,7 @@ impl Factors {
             };
             let count = match count {
                 Some(count) => count,
-                None => self.front(arch, plan, front, (entries, rules), progress)?,
+                None => self.front(arch, plan, front, entries, rules, progress)?,
             };
             let block = self.blocks.last().expect("a block for each front");
             self.largest = self.largest.max(block.order);
@@ -165,7 +165,8 @@ impl Factors {
         arch: Arch,
         plan: &Fronts,
         front: &Front,
-        (entries, rules): (&[f64], Rules),
+        entries: &[f64],
+        rules: Rules,
         progress: &mut Progress<'_>,
     ) -> Result<Count, Stopped> {
         let children = &plan.children[front.children.clone()];

@@ -71,7 +71,7 @@ fn by_stages(graph: &Graph, unknowns: &[Unknown]) -> Elimination {
     let range = |row: usize| {
         let others = graph.neighbours(row).iter();
         let stages = others.filter_map(|&i| unknowns[i as usize].stage());
-        stages.fold((u32::MAX, 0), |(low, high), s| (low.min(s), high.max(s)))
+        stages.fold([u32::MAX, 0], |[low, high], s| [low.min(s), high.max(s)])
     };
     let slack_row = |slack: usize| {
         let rows = graph.neighbours(slack).iter();
@@ -88,7 +88,7 @@ fn by_stages(graph: &Graph, unknowns: &[Unknown]) -> Elimination {
             Key::of_inequality(range(row), 0, row, i)
         }
         Unknown::Inequality => Key::of_inequality(range(i), 1, i, i),
-        Unknown::Equality => Key::new(2, range(i).1, 1, i),
+        Unknown::Equality => Key::new(2, range(i)[1], 1, i),
     };
     let mut keys: Vec<Key> = (0..n).map(key).collect();
     keys.sort_unstable();
@@ -114,7 +114,8 @@ impl Key {
     }
 
     /// The slack of row `row` (part 0) or the row itself (part 1), which go together.
-    fn of_inequality((low, high): (u32, u32), part: u64, row: usize, unknown: usize) -> Self {
+    fn of_inequality(stages: [u32; 2], part: u64, row: usize, unknown: usize) -> Self {
+        let [low, high] = stages;
         let is_local = high < low || high - low <= REACH;
         let key = match is_local {
             true => Self::new(0, 0, 0, unknown),

@@ -8,6 +8,7 @@
 use super::dense::Dense;
 use super::dense::largest;
 use pulp::Simd;
+use std::ops::Range;
 
 /// A single pivot at least this part of the largest other entry of its column is taken without looking for a pair.
 const GOOD: f64 = 0.1;
@@ -47,18 +48,17 @@ struct Beside {
 }
 
 impl Dense<'_> {
-    /// A pivot of the columns `q..e` that keeps the rules, if any.
+    /// A pivot of the columns of a panel that keeps the rules, if any.
     #[inline(always)]
     pub(super) fn choose<S: Simd>(
         &self,
         unit: S,
         rules: Rules,
-        q: usize,
-        e: usize,
+        panel: Range<usize>,
     ) -> Option<Pivot> {
         // A loop, since closures are not compiled for the vector unit.
-        for c in q..e {
-            if let Some(pivot) = self.of_column(unit, rules, c, (q, e)) {
+        for c in panel.clone() {
+            if let Some(pivot) = self.of_column(unit, rules, c, &panel) {
                 return Some(pivot);
             }
         }
@@ -72,7 +72,7 @@ impl Dense<'_> {
         unit: S,
         rules: Rules,
         c: usize,
-        panel: (usize, usize),
+        panel: &Range<usize>,
     ) -> Option<Pivot> {
         let beside = self.beside(unit, c, usize::MAX, panel);
         let diagonal = self.at(c, c).abs();
@@ -98,7 +98,7 @@ impl Dense<'_> {
         rules: Rules,
         c: usize,
         beside: Beside,
-        panel: (usize, usize),
+        panel: &Range<usize>,
     ) -> bool {
         let t = beside.at;
         let (a, b) = (self.at(c, c).abs(), self.at(t, t).abs());
@@ -115,10 +115,10 @@ impl Dense<'_> {
 
     /// Largest entries of column `c` without row `skipped`.
     #[inline(always)]
-    fn beside<S: Simd>(&self, unit: S, c: usize, skipped: usize, (q, e): (usize, usize)) -> Beside {
+    fn beside<S: Simd>(&self, unit: S, c: usize, skipped: usize, panel: &Range<usize>) -> Beside {
         let column = &self.values[c * self.stride..][..self.order];
         let mut beside = Beside {
-            rest: largest(unit, &column[e..]),
+            rest: largest(unit, &column[panel.end..]),
             ..Beside::default()
         };
         let mut look = |i: usize, value: f64| {
@@ -130,10 +130,10 @@ impl Dense<'_> {
                 beside.rest = value;
             }
         };
-        for j in q..c {
+        for j in panel.start..c {
             look(j, self.values[c + j * self.stride]);
         }
-        for (i, &value) in column.iter().enumerate().take(e).skip(c + 1) {
+        for (i, &value) in column.iter().enumerate().take(panel.end).skip(c + 1) {
             look(i, value);
         }
         beside

@@ -17,7 +17,7 @@
 
 use crate::kkt::condense::Plan;
 use crate::kkt::condensed::Condensed;
-use crate::kkt::graph::Progress;
+use crate::kkt::graph::{Pattern, Progress};
 use crate::kkt::numeric::{Factors, Outcome};
 use crate::kkt::pivot::{Inertia, Rules};
 use crate::kkt::substitute::solve;
@@ -187,7 +187,7 @@ impl Solver {
     ) -> Result<Inertia, Stopped> {
         assert_eq!(
             entries.len(),
-            self.plan.pattern().0.len(),
+            self.plan.pattern().len(),
             "the entries of the pattern"
         );
         self.statistics.factorisations += 1;
@@ -391,7 +391,7 @@ impl Solver {
 
 /// Strategy with which a solver begins.
 fn begin(plan: &Plan) -> PivotStrategy {
-    let cost = plan.multiplications() / plan.pattern().0.len().max(1) as f64;
+    let cost = plan.multiplications() / plan.pattern().len().max(1) as f64;
     match cost > EXPENSIVE {
         _ if plan.condensation.is_some() => PivotStrategy::Condensed,
         true => PivotStrategy::Scaled,
@@ -446,13 +446,13 @@ pub(super) struct Scales {
 
 impl Scales {
     /// Finds the factors of a matrix.
-    pub(super) fn find(&mut self, order: usize, (rows, cols): (&[u32], &[u32]), entries: &[f64]) {
+    pub(super) fn find(&mut self, order: usize, pattern: Pattern<'_>, entries: &[f64]) {
         self.factors.clear();
         self.factors.resize(order, 1.0);
         self.largest.resize(order, 0.0);
         for _ in 0..SWEEPS {
             self.largest.fill(0.0);
-            for ((&row, &col), entry) in rows.iter().zip(cols).zip(entries) {
+            for ((row, col), entry) in pattern.places().zip(entries) {
                 let (row, col) = (row as usize, col as usize);
                 let entry = (entry * self.factors[row] * self.factors[col]).abs();
                 self.largest[row] = self.largest[row].max(entry);
@@ -467,10 +467,10 @@ impl Scales {
     }
 
     /// The scaled entries.
-    pub(super) fn scale(&self, (rows, cols): (&[u32], &[u32]), entries: &[f64], to: &mut Vec<f64>) {
+    pub(super) fn scale(&self, pattern: Pattern<'_>, entries: &[f64], to: &mut Vec<f64>) {
         to.clear();
-        let places = rows.iter().zip(cols).zip(entries);
-        to.extend(places.map(|((&row, &col), entry)| {
+        let places = pattern.places().zip(entries);
+        to.extend(places.map(|((row, col), entry)| {
             entry * self.factors[row as usize] * self.factors[col as usize]
         }));
     }
@@ -515,11 +515,7 @@ impl Trial {
 
     /// The smallest relative change of entries with which the solution x is exact (Oettli and Prager, 1964): the greatest of
     /// `|b − A x| / (|A| |x| + |b|)`.
-    pub(super) fn backward_error(
-        &mut self,
-        (rows, cols): (&[u32], &[u32]),
-        entries: &[f64],
-    ) -> f64 {
+    pub(super) fn backward_error(&mut self, pattern: Pattern<'_>, entries: &[f64]) -> f64 {
         let (x, sums) = (&self.solution, &mut self.sums);
         let places = sums.iter_mut().enumerate();
         places.for_each(|(i, sum)| *sum = [right(i), 1.0]);
@@ -528,7 +524,7 @@ impl Trial {
             *residual -= term;
             *magnitude += term.abs();
         };
-        for ((&row, &col), &entry) in rows.iter().zip(cols).zip(entries) {
+        for ((row, col), &entry) in pattern.places().zip(entries) {
             add(row, entry * x[col as usize]);
             if row != col {
                 add(col, entry * x[row as usize]);
@@ -548,6 +544,7 @@ fn right(i: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::Trial;
+    use crate::kkt::graph::Pattern;
     use nalgebra::{DMatrix, DVector};
 
     /// The error of some numbers that are no solution, against a dense matrix.
@@ -578,7 +575,11 @@ mod tests {
                 let b = DVector::from_column_slice(right);
                 assert!(b[0] == 1.0 && b[1] == -1.0);
                 right.copy_from_slice(x.as_slice());
-                let found = trial.backward_error((&rows, &cols), &entries);
+                let pattern = Pattern {
+                    rows: &rows,
+                    cols: &cols,
+                };
+                let found = trial.backward_error(pattern, &entries);
                 let terms = &magnitudes * x.abs() + b.abs();
                 let expected = (&b - &a * &x).abs().component_div(&terms).max();
                 assert!(expected > 1e-4);
@@ -591,7 +592,11 @@ mod tests {
     fn what_is_no_number_is_no_solution() {
         let mut trial = Trial::new(2);
         trial.begin()[1] = f64::NAN;
-        let error = trial.backward_error((&[0, 1], &[0, 1]), &[1.0, 1.0]);
+        let pattern = Pattern {
+            rows: &[0, 1],
+            cols: &[0, 1],
+        };
+        let error = trial.backward_error(pattern, &[1.0, 1.0]);
         assert_eq!(error, f64::INFINITY);
     }
 }

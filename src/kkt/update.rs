@@ -6,6 +6,7 @@
 use crate::kkt::bandwidth_order::{Block, Item};
 use crate::kkt::dense::{GROUP, padded, subtract};
 use pulp::{Simd, WithSimd};
+use std::ops::Range;
 
 /// Columns of a tile.
 const COLUMNS: usize = 4;
@@ -30,7 +31,7 @@ pub(super) struct Panel<'a> {
     pub(super) pivots: usize,
 }
 
-/// Subtracts `L Wᵀ` from the columns `from..order` of a front, whose slice begins with column `from`.
+/// Subtracts `L Wᵀ` from the columns `updated` of a front, whose slice begins with column `from`.
 ///
 /// Above the diagonal and in the padding of columns anything may be written.
 #[inline(always)]
@@ -39,14 +40,14 @@ pub(super) fn update<S: Simd>(
     packed: &mut Packed,
     panel: Panel<'_>,
     columns: &mut [f64],
-    (from, order): (usize, usize),
+    updated: Range<usize>,
 ) {
-    packed.pack(panel, from, order);
+    packed.pack(panel, &updated);
     match S::F64_LANES {
-        8 => tiles::<S, 1>(unit, packed, panel, columns, (from, order)),
-        4 => tiles::<S, 2>(unit, packed, panel, columns, (from, order)),
-        2 => tiles::<S, 4>(unit, packed, panel, columns, (from, order)),
-        1 => tiles::<S, 8>(unit, packed, panel, columns, (from, order)),
+        8 => tiles::<S, 1>(unit, packed, panel, columns, updated),
+        4 => tiles::<S, 2>(unit, packed, panel, columns, updated),
+        2 => tiles::<S, 4>(unit, packed, panel, columns, updated),
+        1 => tiles::<S, 8>(unit, packed, panel, columns, updated),
         lanes => unreachable!("vector units have 1, 2, 4 or 8 lanes of 64 bits, not {lanes}"),
     }
 }
@@ -58,8 +59,9 @@ fn tiles<S: Simd, const K: usize>(
     packed: &Packed,
     panel: Panel<'_>,
     columns: &mut [f64],
-    (from, order): (usize, usize),
+    updated: Range<usize>,
 ) {
+    let (from, order) = (updated.start, updated.end);
     let group = panel.pivots * GROUP;
     let first = from / GROUP;
     let tiles = packed.right.chunks_exact(panel.pivots * COLUMNS);
@@ -94,7 +96,8 @@ struct Place {
 
 impl Packed {
     #[inline(always)]
-    fn pack(&mut self, panel: Panel<'_>, from: usize, order: usize) {
+    fn pack(&mut self, panel: Panel<'_>, updated: &Range<usize>) {
+        let (from, order) = (updated.start, updated.end);
         let Panel {
             left,
             right,

@@ -9,7 +9,7 @@ use proboscis::control::problem::{Duration, Task};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::files::read_problem;
 use proboscis::ipopt::{self, LinearSolver, OptionValue, Options};
-use proboscis::kkt::{Plan, Solver, Unknown};
+use proboscis::kkt::{Pattern, Plan, Solver, Unknown};
 use proboscis::nlp::{Nlp, Stage};
 use std::cell::RefCell;
 use std::ffi::{c_int, c_void};
@@ -237,7 +237,7 @@ fn record(name: &str, problem: &str, changes: &[&str], kept: usize) -> usize {
     let restored = solution.iterations.iter().filter(|i| i.restoration).count();
     let recorder = RECORDER.take().unwrap();
     let solver = recorder.solver.expect("a system");
-    let (rows, cols) = solver.plan().pattern();
+    let Pattern { rows, cols } = solver.plan().pattern();
     // The first that a factorisation of the method itself meets is one of least squares.
     let mut order: Vec<usize> = (0..recorder.matrices.len()).collect();
     order.sort_by_key(|&i| {
