@@ -23,12 +23,12 @@ pub(super) struct Tangent {
     is_approximate: bool,
 }
 
-fn pair((i, j): (usize, usize)) -> (u32, u32) {
-    (compact_index(i), compact_index(j))
+fn pair(place: (usize, usize)) -> (u32, u32) {
+    (compact_index(place.0), compact_index(place.1))
 }
 
-fn uncounted((i, j): (u32, u32)) -> (usize, usize) {
-    (i as usize, j as usize)
+fn uncounted(place: (u32, u32)) -> (usize, usize) {
+    (place.0 as usize, place.1 as usize)
 }
 
 /// The entry of the lower triangle that is this one or its transpose.

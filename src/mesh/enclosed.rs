@@ -58,7 +58,7 @@ impl Surface {
             second += products.iter().sum::<Matrix3<f64>>() * (determinant / 120.0);
         }
         if volume.abs() <= FLAT * (upper - lower).max().powi(3) {
-            return Err(whole(
+            return Err(MeshError::whole(
                 "a surface that encloses no volume",
                 "that of a solid",
             ));
@@ -66,7 +66,7 @@ impl Surface {
         if volume < 0.0 {
             let found = format!("normals that point inwards, and a volume of {volume:.4e} mm^3");
             let expected = "corners of triangles that are counter-clockwise seen from outside";
-            return Err(whole(found, expected));
+            return Err(MeshError::whole(found, expected));
         }
         let centre = first / volume;
         Ok(EnclosedSolid {
@@ -79,11 +79,11 @@ impl Surface {
     /// Checks that vertices are finite, and that each edge is passed as often one way as the other.
     fn check_closed(&self) -> Result<(), MeshError> {
         if self.triangles.is_empty() {
-            return Err(whole("no triangle with an area", "a surface"));
+            return Err(MeshError::whole("no triangle with an area", "a surface"));
         }
         let outside = |vertex: &&Vector3<f64>| !vertex.iter().all(|x| x.is_finite());
         if let Some(vertex) = self.vertices.iter().find(outside) {
-            return Err(whole(place(vertex), "finite places"));
+            return Err(MeshError::whole(place(vertex), "finite places"));
         }
         let mut seen = FxHashSet::default();
         for triangle in &self.triangles {
@@ -91,7 +91,7 @@ impl Surface {
             if !seen.insert([0, 1, 2].map(|i| triangle[(least + i) % 3])) {
                 let [a, b, c] = triangle.map(|vertex| place(&self.vertices[vertex]));
                 let found = format!("the triangle {a}, {b}, {c} twice");
-                return Err(whole(found, "each triangle once"));
+                return Err(MeshError::whole(found, "each triangle once"));
             }
         }
         // Passes of an edge from the lower vertex to the higher one, and the other way.
@@ -118,11 +118,11 @@ impl Surface {
             .iter()
             .filter(|(_, pass)| (pass[0] + pass[1]) % 2 == 1);
         match open.count() {
-            0 => Err(whole(
+            0 => Err(MeshError::whole(
                 format!("triangles of opposite orientation at the edge from {ends}"),
                 "neighbours that are oriented alike",
             )),
-            count => Err(whole(
+            count => Err(MeshError::whole(
                 format!(
                     "an open surface: {count} of {} edges have a triangle on one side only; one edge in question goes from {ends}",
                     passes.len()
@@ -130,13 +130,6 @@ impl Surface {
                 "a closed surface",
             )),
         }
-    }
-}
-
-fn whole(found: impl Into<String>, expected: impl Into<String>) -> MeshError {
-    MeshError::Whole {
-        found: found.into(),
-        expected: expected.into(),
     }
 }
 

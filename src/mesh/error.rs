@@ -62,6 +62,16 @@ pub enum MeshError {
     },
 }
 
+impl MeshError {
+    /// An error of the mesh as a whole.
+    pub(super) fn whole(found: impl Into<String>, expected: impl Into<String>) -> Self {
+        Self::Whole {
+            found: found.into(),
+            expected: expected.into(),
+        }
+    }
+}
+
 /// Identification of an element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ElementName {

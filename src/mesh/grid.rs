@@ -148,7 +148,8 @@ impl Mesh {
             return None;
         }
         let [cells_x, cells_y] = [counts[0] - 1, counts[1] - 1];
-        let is_cell = |(cell, nodes): (usize, &[usize; 8])| {
+        let mut cells = self.hexahedra.iter().enumerate();
+        let are_cells = cells.all(|(cell, nodes)| {
             let [i, j, k] = [
                 cell % cells_x,
                 cell / cells_x % cells_y,
@@ -157,8 +158,8 @@ impl Mesh {
             let first = i + n_x * j + n_xy * k;
             let lower = [first, first + 1, first + 1 + n_x, first + n_x];
             nodes[..4] == lower && nodes[4..] == lower.map(|node| node + n_xy)
-        };
-        if !self.hexahedra.iter().enumerate().all(is_cell) {
+        });
+        if !are_cells {
             return None;
         }
         let strides = [1, n_x, n_xy];

@@ -23,37 +23,27 @@ impl Mesh {
     pub fn check(&self) -> Result<(), MeshError> {
         self.check_elements(ElementName::Index)?;
         if self.regions.len() != self.hexahedra.len() {
-            return Err(MeshError::Whole {
-                found: format!(
-                    "{} regions of {} hexahedra",
-                    self.regions.len(),
-                    self.hexahedra.len()
-                ),
-                expected: "one region per hexahedron".to_owned(),
-            });
+            let (regions, elements) = (self.regions.len(), self.hexahedra.len());
+            let found = format!("{regions} regions of {elements} hexahedra");
+            return Err(MeshError::whole(found, "one region per hexahedron"));
         }
         let names = self.region_names.len();
         if let Some(region) = self.regions.iter().find(|&&region| region >= names) {
-            return Err(MeshError::Whole {
-                found: format!("region {region} of {names} names"),
-                expected: "a name for each region".to_owned(),
-            });
+            let found = format!("region {region} of {names} names");
+            return Err(MeshError::whole(found, "a name for each region"));
         }
         let count = self.nodes.len();
         for (name, nodes) in &self.sets {
             let ascending = nodes.windows(2).all(|pair| pair[0] < pair[1]);
             let outside = nodes.iter().find(|&&node| node >= count);
             if let Some(node) = outside {
-                return Err(MeshError::Whole {
-                    found: format!("node {node} in the set {name:?}"),
-                    expected: format!("indices below the number of nodes, {count}"),
-                });
+                let found = format!("node {node} in the set {name:?}");
+                let expected = format!("indices below the number of nodes, {count}");
+                return Err(MeshError::whole(found, expected));
             }
             if !ascending {
-                return Err(MeshError::Whole {
-                    found: format!("a set {name:?} that is not sorted"),
-                    expected: "ascending nodes, each once".to_owned(),
-                });
+                let found = format!("a set {name:?} that is not sorted");
+                return Err(MeshError::whole(found, "ascending nodes, each once"));
             }
         }
         Ok(())
@@ -65,10 +55,7 @@ impl Mesh {
         name: impl Fn(usize) -> ElementName,
     ) -> Result<(), MeshError> {
         if self.hexahedra.is_empty() {
-            return Err(MeshError::Whole {
-                found: "no element".to_owned(),
-                expected: "one hexahedron or more".to_owned(),
-            });
+            return Err(MeshError::whole("no element", "one hexahedron or more"));
         }
         let mut seen: HashMap<[usize; 8], usize> = HashMap::new();
         for (element, nodes) in self.hexahedra.iter().enumerate() {
