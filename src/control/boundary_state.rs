@@ -46,6 +46,17 @@ pub enum BoundaryState {
     Periodic,
 }
 
+impl BoundaryState {
+    /// Joint coordinates by joint index, at rest.
+    pub fn at_joints(angles: BTreeMap<usize, f64>) -> Self {
+        Self::JointAngles {
+            angles,
+            rates: BTreeMap::new(),
+            velocities: BTreeMap::new(),
+        }
+    }
+}
+
 /// Part of the system that comes to rest at a goal.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rest {

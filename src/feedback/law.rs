@@ -110,7 +110,7 @@ pub struct Integral {
 }
 
 /// A control law along a motion.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Law {
     /// Measured quantities.
     pub measured: Vec<Measured>,

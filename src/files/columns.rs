@@ -44,10 +44,9 @@ impl Columns {
             found format!("{}, which is empty", path.display()),
             expected "a CSV file: a line of headers, then lines of numbers");
         let headers: StringRecord = headers.iter().map(plain).collect();
-        if headers.len() == 1 && headers[0].contains(';') {
-            let found = format!("{}, with semicolons between columns", path.display());
-            return Err(scope.wrong(found, "a CSV file with commas between columns"));
-        }
+        refuse!(if headers.len() == 1 && headers[0].contains(';'), scope;
+            found format!("{}, with semicolons between columns", path.display()),
+            expected "a CSV file with commas between columns");
         let rows: Result<_, _> = reader.records().collect();
         Ok(Self {
             rows: rows.map_err(|cause| mistake(&cause))?,
@@ -84,11 +83,12 @@ impl Columns {
     /// The column of a kind with a header, or with a header of this name and any unit; an empty cell is a mistake.
     pub(crate) fn column<M: PhysicalQuantity>(
         &self,
-        (name, kind): (&str, &Kind),
+        name: &str,
+        kind: &Kind,
         scope: &Scope<'_>,
     ) -> Result<Vec<Quantity<M>>> {
-        let (at, unit) = self.place((name, kind), scope)?;
-        let read = |row: &StringRecord| self.cell(row, (at, unit.as_deref()), scope);
+        let place = self.place(name, kind, scope)?;
+        let read = |row: &StringRecord| self.cell(row, &place, scope);
         self.rows.iter().map(read).collect()
     }
 
@@ -99,22 +99,16 @@ impl Columns {
         kind: &Kind,
         scope: &Scope<'_>,
     ) -> Result<Vec<Option<Quantity<M>>>> {
-        let (at, unit) = self.place((name, kind), scope)?;
-        let read = |row: &StringRecord| {
-            let is_gap = row[at].is_empty();
-            (!is_gap)
-                .then(|| self.cell(row, (at, unit.as_deref()), scope))
-                .transpose()
+        let place = self.place(name, kind, scope)?;
+        let read = |row: &StringRecord| match row[place.index].is_empty() {
+            true => Ok(None),
+            false => self.cell(row, &place, scope).map(Some),
         };
         self.rows.iter().map(read).collect()
     }
 
     /// Place and unit of the column with a header. A note tells which unit is taken where the header has none.
-    fn place(
-        &self,
-        (name, kind): (&str, &Kind),
-        scope: &Scope<'_>,
-    ) -> Result<(usize, Option<String>)> {
+    fn place(&self, name: &str, kind: &Kind, scope: &Scope<'_>) -> Result<Place> {
         let headers: Vec<Header<'_>> = (self.headers.iter())
             .map(|header| Header::new(header, kind))
             .collect();
@@ -152,18 +146,21 @@ impl Columns {
                 .document
                 .note(format!("the header {column} has no unit: {taken} is taken"));
         }
-        Ok((at, unit.map(str::to_owned)))
+        Ok(Place {
+            index: at,
+            unit: unit.map(str::to_owned),
+        })
     }
 
     /// A cell in the unit of its column.
     fn cell<M: PhysicalQuantity>(
         &self,
         row: &StringRecord,
-        (at, unit): (usize, Option<&str>),
+        place: &Place,
         scope: &Scope<'_>,
     ) -> Result<Quantity<M>> {
-        let cell = &row[at];
-        let quantity = match unit {
+        let cell = &row[place.index];
+        let quantity = match &place.unit {
             _ if cell.trim().is_empty() => Err("an empty cell".to_owned()),
             Some(unit) => Quantity::try_from_text(&format!("{cell} {unit}")),
             None => match cell.parse() {
@@ -177,6 +174,12 @@ impl Columns {
             scope.wrong(place, Quantity::<M>::expected())
         })
     }
+}
+
+/// Place of a column, and its unit where the header has one.
+struct Place {
+    index: usize,
+    unit: Option<String>,
 }
 
 /// A header, read for a column of some kind.

@@ -8,6 +8,29 @@
 //! - [`solution`]: motions that later runs start from; [`npz`]: arrays of long ones; [`continuation`]: motions that go on.
 //! - [`urdf`]: robots of ROS; [`stl`]: surfaces; `columns`: columns of CSV files; `typed`: scenes and voltages named on the command line.
 
+use crate::control::Motion;
+use crate::control::problem::{Disturbed, Duration, Regulator, Task};
+use crate::files::json::error::Result;
+use crate::files::json::scope::refuse;
+use crate::files::json::set::Override;
+use crate::files::problem::at::At;
+use crate::files::problem::build::{ProblemSpec, SceneSource, build_problem};
+use crate::files::problem::changed_scenes::changed_scenes;
+use crate::files::problem::disturbance::disturbed;
+use crate::files::problem::feedback::regulator;
+use crate::files::problem::motions::{MotionDocument, motions, together};
+use crate::files::problem::output::{Output, output};
+use crate::files::problem::receding::add_plan;
+use crate::files::scene::build::build_scene;
+use crate::files::scene::constants::WrittenScene;
+use crate::files::scene::expand::{add_named, expanded};
+use crate::files::scene::spec::SceneSpec;
+use crate::files::study::{ChangesSpec, StudySpec};
+use crate::files::sweep::SweepSpec;
+use crate::model::system::System;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
 pub(crate) mod changes;
 mod columns;
 pub mod continuation;
@@ -38,30 +61,6 @@ pub use scene::material::named_materials;
 pub use scene::trunk::new_trunk;
 pub use typed::{driven_voltages, each_entry_once, each_once, read_system};
 pub(crate) use units::si;
-
-use serde_json::Value;
-use std::path::{Path, PathBuf};
-
-use crate::control::Motion;
-use crate::control::problem::{Disturbed, Duration, Regulator, Task};
-use crate::files::json::error::Result;
-use crate::files::json::set::Override;
-use crate::files::problem::at::At;
-use crate::files::problem::build::build_problem;
-use crate::files::problem::changed_scenes::changed_scenes;
-use crate::files::problem::disturbance::disturbed;
-use crate::files::problem::feedback::regulator;
-use crate::files::problem::motions::{MotionDocument, motions, together};
-use crate::files::problem::output::{Output, output};
-use crate::files::problem::receding::add_plan;
-use crate::files::problem::spec::{ProblemSpec, SceneSource};
-use crate::files::scene::build::build_scene;
-use crate::files::scene::constants::WrittenScene;
-use crate::files::scene::expand::{add_named, expanded};
-use crate::files::scene::spec::SceneSpec;
-use crate::files::study::{ChangesSpec, StudySpec};
-use crate::files::sweep::SweepSpec;
-use crate::model::system::System;
 
 /// A problem with its scene, read and checked.
 #[derive(Clone, Debug)]
@@ -156,11 +155,9 @@ fn problem_of(read: impl FnOnce() -> Result<Document>, overrides: &[String]) -> 
         first.get_or_insert(loaded);
     }
     let first = first.expect("a list has a motion");
-    if first.feedback.is_some() {
-        let place = Scope::of(&document);
-        let expected = "none beside a list of motions: each has an optimum of its own";
-        return Err(place.key("feedback").wrong("a \"feedback\"", expected));
-    }
+    refuse!(if first.feedback.is_some(), Scope::of(&document).key("feedback");
+        found "a \"feedback\"",
+        expected "none beside a list of motions: each has an optimum of its own");
     Ok(Loaded {
         task: Task::Motions(Box::new(together(each, &document)?)),
         problem: document.json().to_string(),
@@ -176,7 +173,7 @@ fn with_changed_scenes(document: &Document, of_scene: &[Override]) -> Result<Loa
         let all = [of_scene, &of.changes.overrides()?].concat();
         let changed = alone(document.clone(), &all, &of.set);
         let changed = changed.map_err(|error| of.changes.at_fault(error, &document.path))?;
-        of.add(&mut loaded.task, (changed.system, changed.task), document)?;
+        of.add(&mut loaded.task, changed.system, changed.task, document)?;
         let notes = changed.notes.into_iter();
         let further: Vec<_> = notes.filter(|note| !loaded.notes.contains(note)).collect();
         loaded.notes.extend(further);

@@ -2,8 +2,8 @@
 
 use crate::control;
 use crate::control::problem::{
-    Ahead, Combined, ControlTask, Duration, Guess, Hold, Limit, MotionTask, Objective, OutcomeOf,
-    QuantityCost, Regulator, Solver, SoughtHold, Varied,
+    Ahead, BoundaryState, Combined, ControlTask, Duration, Guess, MotionTask, OutcomeOf,
+    QuantityCost, Regulator, SoughtHold, Varied, Voltages,
 };
 use crate::control::{Earlier, EarlierSolution, Motions, problem};
 use crate::interface::builder::builder;
@@ -31,45 +31,32 @@ use std::ops::{ControlFlow, RangeInclusive};
 /// An optimal control problem: voltages and loads that steer a system from rest to rest, or along a path.
 #[derive(Clone, Debug)]
 pub struct Control {
-    duration: Duration,
-    intervals: usize,
+    /// The task but for its ends and inputs, whose parts are found in a system.
+    pub(super) task: problem::Control,
     start: State,
     goal: State,
-    sought_hold: SoughtHold,
-    voltage_bounds: [f64; 2],
     load_bounds: Vec<(Handle<Load>, [f64; 2])>,
-    pub(super) objective: Objective,
-    pub(super) limits: Vec<Limit>,
-    pub(super) waypoints: Vec<problem::Waypoint>,
     voltages: Vec<(Input, Signal)>,
-    parameters: Vec<Parameter>,
-    varied: Vec<Varied>,
-    outcomes: Vec<OutcomeOf>,
     pub(super) peak_voltage: f64,
-    guess: Guess,
     max_seconds: Option<f64>,
 }
 
 impl Control {
     /// Over a given duration in ms in this number of intervals, from rest without voltages to the reference configuration.
     pub fn over(duration: f64, intervals: usize) -> Self {
+        let (nowhere, nothing) = (BoundaryState::Free, Voltages::Constant(Vec::new()));
         Self {
-            duration: Duration::Given(duration),
-            intervals,
+            task: problem::Control {
+                voltage_bounds: [0.0, f64::INFINITY],
+                course: None,
+                sought_hold: SoughtHold::default(),
+                ..problem::Control::of_course(&nowhere, &nothing, duration, intervals)
+            },
             start: State::rest(),
             goal: State::Reference,
-            sought_hold: SoughtHold::default(),
-            voltage_bounds: [0.0, f64::INFINITY],
             load_bounds: Vec::new(),
-            objective: Objective::default(),
-            limits: Vec::new(),
-            waypoints: Vec::new(),
             voltages: Vec::new(),
-            parameters: Vec::new(),
-            varied: Vec::new(),
-            outcomes: Vec::new(),
             peak_voltage: 0.0,
-            guess: Guess::Interpolate,
             max_seconds: None,
         }
     }
@@ -78,10 +65,9 @@ impl Control {
     pub fn over_free(duration: RangeInclusive<f64>, intervals: usize) -> Self {
         let (min, max) = (*duration.start(), *duration.end());
         let guess = 0.5 * (min + max);
-        Self {
-            duration: Duration::Free { min, max, guess },
-            ..Self::over(guess, intervals)
-        }
+        let mut free = Self::over(guess, intervals);
+        free.task.duration = Duration::Free { min, max, guess };
+        free
     }
 
     /// Seeks a load within bounds in N, or N mm of a torque; loads that are neither sought nor given are zero.
@@ -143,69 +129,53 @@ impl Control {
 
     pub(super) fn resolve(&self, system: &System) -> Result<problem::Control> {
         let positive = |v: f64| v > 0.0 && v.is_finite();
-        let (first, bounds) = match self.duration {
+        let (first, bounds) = match self.task.duration {
             Duration::Given(duration) => (duration, [duration; 2]),
             Duration::Free { min, max, guess } => (guess, [min, max]),
         };
         let holds = positive(first) && bounds.map(positive) == [true; 2] && bounds[0] <= bounds[1];
-        let found = || format!("a duration within {bounds:?} ms");
-        require(holds, "control", found, "positive numbers that grow")?;
-        let found = || "no interval".to_owned();
-        require(self.intervals > 0, "control", found, "one or more")?;
-        let [lower, upper] = self.voltage_bounds;
-        let found = || format!("voltages within {:?} V", self.voltage_bounds);
-        require(lower < upper, "control", found, "bounds that grow")?;
+        require!(holds, "control";
+            found("a duration within {bounds:?} ms"), expected "positive numbers that grow");
+        require!(self.task.intervals > 0, "control"; found("no interval"), expected "one or more");
+        let [lower, upper] = self.task.voltage_bounds;
+        require!(lower < upper, "control";
+            found("voltages within {:?} V", self.task.voltage_bounds), expected "bounds that grow");
         let sources = system.sources();
-        let found = || "a system without a muscle that takes a voltage, or a load".to_owned();
-        let takes = sources.iter().any(Source::acts);
-        let expected = "a muscle with a permittivity, or a load";
-        require(takes, "control", found, expected)?;
+        require!(sources.iter().any(Source::acts), "control";
+            found("a system without a muscle that takes a voltage, or a load"),
+            expected "a muscle with a permittivity, or a load");
         let load_bounds = self.load_bounds(system)?;
         let given = self.given(system, &load_bounds)?;
-        let all = || "all voltages and loads".to_owned();
         let is_open = |s: usize| sources[s].acts() && !given.contains_key(&s);
-        let open = !self.parameters.is_empty() || (0..sources.len()).any(is_open);
-        let expected = "a voltage or load to look for, or a free parameter";
-        require(open, "control", all, expected)?;
-        let weights = &self.objective;
+        let open = !self.task.parameters.is_empty() || (0..sources.len()).any(is_open);
+        require!(open, "control";
+            found("all voltages and loads"),
+            expected "a voltage or load to look for, or a free parameter");
+        let weights = &self.task.objective;
         let weights = [
             weights.effort,
             weights.rate,
             weights.duration,
             self.peak_voltage,
         ];
-        let costs = &self.objective.quantities;
-        let energies = &self.objective.energies;
+        let costs = &self.task.objective.quantities;
+        let energies = &self.task.objective.energies;
         let is_any = !costs.is_empty() || !energies.is_empty() || weights != [0.0; 4];
         let holds = weights.iter().all(|w| *w >= 0.0 && w.is_finite()) && is_any;
-        let found = || format!("weights {weights:?} of effort, rate, time and peak");
-        require(holds, "control", found, "weights of which one is positive")?;
+        require!(holds, "control";
+            found("weights {weights:?} of effort, rate, time and peak"),
+            expected "weights of which one is positive");
         let is_periodic = self.goal == State::Periodic;
         check_costs(costs, is_periodic, system)?;
         check_energies(energies, system)?;
-        check_waypoints(&self.waypoints, is_periodic, system)?;
-        check_limits(&self.limits, system)?;
+        check_waypoints(&self.task.waypoints, is_periodic, system)?;
+        check_limits(&self.task.limits, system)?;
         let control = problem::Control {
-            duration: self.duration,
-            intervals: self.intervals,
-            is_refined: false,
-            varied: self.varied.clone(),
-            outcomes: self.outcomes.clone(),
             start: self.start.resolve(system, sources.len())?,
             goal: self.goal.resolve(system, sources.len())?,
-            voltage_bounds: self.voltage_bounds,
             load_bounds,
             given,
-            course: None,
-            parameters: self.parameters.clone(),
-            sought_hold: self.sought_hold,
-            hold: Hold::Reported,
-            objective: self.objective.clone(),
-            limits: self.limits.clone(),
-            waypoints: self.waypoints.clone(),
-            coordinates: None,
-            guess: self.guess.clone(),
-            solver: Solver::default(),
+            ..self.task.clone()
         };
         self.with_peak(control, system)
     }
@@ -213,8 +183,8 @@ impl Control {
     /// Bounds of the loads that are sought, by source.
     fn load_bounds(&self, system: &System) -> Result<BTreeMap<usize, [f64; 2]>> {
         let bounds = |&(load, bounds): &(Handle<Load>, [f64; 2])| {
-            let found = || format!("loads within {bounds:?}");
-            require(bounds[0] < bounds[1], "control", found, "bounds that grow")?;
+            require!(bounds[0] < bounds[1], "control";
+                found("loads within {bounds:?}"), expected "bounds that grow");
             Ok((source(&load.into(), system)?, bounds))
         };
         self.load_bounds.iter().map(bounds).collect()
@@ -227,20 +197,18 @@ impl Control {
         sought: &BTreeMap<usize, [f64; 2]>,
     ) -> Result<BTreeMap<usize, Signal>> {
         let mut functions = self.voltages.iter().map(|(_, function)| function);
-        let jump = functions.find_map(|function| self.duration.jump(function));
-        let found = || {
-            let time = shortest(jump.unwrap_or_default(), 6);
-            format!("a voltage or load that jumps at {time} ms where the duration is free")
-        };
-        let expected = "functions of time without jumps, or a given duration";
-        require(jump.is_none(), "control", found, expected)?;
+        let jump = functions.find_map(|function| self.task.duration.jump(function));
+        let time = shortest(jump.unwrap_or_default(), 6);
+        require!(jump.is_none(), "control";
+            found("a voltage or load that jumps at {time} ms where the duration is free"),
+            expected "functions of time without jumps, or a given duration");
         let place =
             |(input, signal): &(Input, Signal)| Ok((source(input, system)?, signal.clone()));
         let mut given: BTreeMap<usize, Signal> =
             self.voltages.iter().map(place).collect::<Result<_>>()?;
         let both = given.keys().any(|source| sought.contains_key(source));
-        let found = || "a load that is given and sought".to_owned();
-        require(!both, "control", found, "one of both")?;
+        require!(!both, "control";
+            found("a load that is given and sought"), expected "one of both");
         let is_named = |s: usize| sought.contains_key(&s) || given.contains_key(&s);
         let absent: Vec<_> = problem::absent_loads(system, is_named).collect();
         given.extend(absent);
@@ -256,31 +224,31 @@ builder! {
     goal(goal: State) |of| of.goal = goal;
     /// Does not seek inputs that hold a goal of places or joint coordinates. Otherwise, where the motion leaves such a goal under its last
     /// inputs, the problem is solved again with [these](Self::find_hold) as unknowns.
-    without_hold() |of| of.sought_hold = SoughtHold::Never;
+    without_hold() |of| of.task.sought_hold = SoughtHold::Never;
     /// Seeks the voltages and loads that hold a goal of places or joint coordinates together with the motion: the goal is an equilibrium under
     /// them, and they count as those of one more interval.
-    find_hold() |of| of.sought_hold = SoughtHold::Always;
+    find_hold() |of| of.task.sought_hold = SoughtHold::Always;
     /// Bounds of all voltages in V; from 0 to infinity where nothing is said.
-    voltage_bounds(lower: f64, upper: f64) |of| of.voltage_bounds = [lower, upper];
+    voltage_bounds(lower: f64, upper: f64) |of| of.task.voltage_bounds = [lower, upper];
     /// Minimises Σ h |V|² of the inputs V in kV, N or N m, h in s, with a weight.
-    effort(weight: f64) |of| of.objective.effort = weight;
+    effort(weight: f64) |of| of.task.objective.effort = weight;
     /// Minimises Σ |ΔV|²/h of the changes of the inputs, with a weight.
-    rate(weight: f64) |of| of.objective.rate = weight;
+    rate(weight: f64) |of| of.task.objective.rate = weight;
     /// Minimises the duration in s, with a weight.
-    time(weight: f64) |of| of.objective.duration = weight;
+    time(weight: f64) |of| of.task.objective.duration = weight;
     /// Minimises a function of a quantity; [`Control::track`] and its neighbours make the usual ones.
-    minimise(cost: QuantityCost) |of| of.objective.quantities.push(cost);
+    minimise(cost: QuantityCost) |of| of.task.objective.quantities.push(cost);
     /// A voltage that is given: a constant in V, or a [`Signal`] whose value in the middle of each interval acts during the interval.
     voltage(input: impl Into<Input>, signal: impl Into<Signal>) |of| of.voltages.push((input.into(), signal.into()));
     /// Seeks constants of the system within bounds; see [`Optimum::parameters`].
-    seek(parameter: Parameter) |of| of.parameters.push(parameter);
+    seek(parameter: Parameter) |of| of.task.parameters.push(parameter);
     /// Differentiates the optimum by a number of the problem; see [`Optimum::sensitivities`](crate::interface::Optimum::sensitivities).
-    sensitivity(varied: Varied) |of| of.varied.push(varied);
+    sensitivity(varied: Varied) |of| of.task.varied.push(varied);
     /// Differentiates this outcome, others that are named, and the objective, and nothing else; see
     /// [`Optimum::gradients`](crate::interface::Optimum::gradients). A few outcomes by many numbers take less work than all by each number.
-    outcome(outcome: OutcomeOf) |of| of.outcomes.push(outcome);
+    outcome(outcome: OutcomeOf) |of| of.task.outcomes.push(outcome);
     /// Starts from an earlier solution, also of another grid or goal.
-    starting_from(earlier: impl EarlierSolution + 'static) |of| of.guess = Guess::Solution(Earlier::new(earlier));
+    starting_from(earlier: impl EarlierSolution + 'static) |of| of.task.guess = Guess::Solution(Earlier::new(earlier));
     /// Stops the solver after this number of seconds.
     max_seconds(seconds: f64) |of| of.max_seconds = Some(seconds);
 }
@@ -291,10 +259,9 @@ impl Control {
     /// # Errors
     /// As of [`solve`](Self::solve); no optimum was found, nothing holds the goal, or the problem has something that is not offered.
     pub fn horizon(&self, system: &System, intervals: usize) -> Result<Horizon> {
-        let found = || format!("{intervals} intervals");
-        require(intervals > 0, "horizon", found, "1 or more")?;
-        let holds = intervals <= Ahead::MOST_INTERVALS;
-        require(holds, "horizon", found, "no more than 10000")?;
+        require!(intervals > 0, "horizon"; found("{intervals} intervals"), expected "1 or more");
+        require!(intervals <= Ahead::MOST_INTERVALS, "horizon";
+            found("{intervals} intervals"), expected "no more than 10000");
         let system = system.checked()?;
         let ahead = Ahead {
             control: self.resolve(&system)?,
@@ -344,8 +311,7 @@ impl<'a> Together<'a> {
     /// As of [`Control::solve`], or something cannot be the same in all motions. A problem without a solution is no error: see
     /// [`Optimum::is_solved`] of each.
     pub fn solve(&self) -> Result<Vec<Optimum>> {
-        let found = || "none".to_owned();
-        require(!self.motions.is_empty(), "motions", found, "one or more")?;
+        require!(!self.motions.is_empty(), "motions"; found("none"), expected "one or more");
         let mut list = Vec::new();
         for (number, (system, control)) in self.motions.iter().enumerate() {
             let system = system.checked()?;
@@ -358,9 +324,8 @@ impl<'a> Together<'a> {
         let sources = list[0].system.sources();
         let name = |input: &Input| {
             let found = input.source(&list[0].system);
-            let words = || format!("{input:?}");
-            let expected = "a muscle, driven electrode or load of all systems";
-            require(found.is_some(), "shared inputs", words, expected)?;
+            require!(found.is_some(), "shared inputs";
+                found("{input:?}"), expected "a muscle, driven electrode or load of all systems");
             Ok(sources[found.unwrap_or_default()].name.clone())
         };
         let shared_inputs = self.shared.iter().map(name).collect::<Result<_>>()?;

@@ -30,9 +30,9 @@ pub(super) fn check_costs(
             During::Motion | During::End => true,
         };
         let is_sound = cost.weight > 0.0 && cost.weight.is_finite() && is_followed && is_timed;
-        let found = || format!("{cost:?}");
-        let expected = "a positive weight of a marker, of a joint with one coordinate, or of a quantity of a lumped muscle (of its source behind a resistor), along finite values or at a part of the duration above 0 and below 1";
-        require(exists && is_sound, "cost", found, expected)?;
+        require!(exists && is_sound, "cost";
+            found("{cost:?}"),
+            expected "a positive weight of a marker, of a joint with one coordinate, or of a quantity of a lumped muscle (of its source behind a resistor), along finite values or at a part of the duration above 0 and below 1");
     }
     Ok(())
 }
@@ -41,9 +41,8 @@ pub(super) fn check_costs(
 pub(super) fn check_energies(costs: &[EnergyCost], system: &System) -> Result<()> {
     for cost in costs {
         let is_sound = cost.weight > 0.0 && cost.weight.is_finite();
-        let found = || format!("{cost:?}");
-        let expected = "a positive weight of a lumped muscle with a permittivity";
-        require(cost.exists(system) && is_sound, "cost", found, expected)?;
+        require!(cost.exists(system) && is_sound, "cost";
+            found("{cost:?}"), expected "a positive weight of a lumped muscle with a permittivity");
     }
     Ok(())
 }
@@ -54,9 +53,8 @@ pub(super) fn check_limits(limits: &[Limit], system: &System) -> Result<()> {
         let is_then = limit.part.is_none_or(|part| part > 0.0 && part <= 1.0);
         let has_field = !matches!(limit.what, What::Field(_)) || limit.max > 0.0;
         let leaves = limit.min <= limit.max && has_field;
-        let holds = limit.what.exists(system) && leaves && is_then;
-        let found = || format!("{limit:?}");
-        require(holds, "limit", found, "a range of a part of the system")?;
+        require!(limit.what.exists(system) && leaves && is_then, "limit";
+            found("{limit:?}"), expected "a range of a part of the system");
     }
     Ok(())
 }
@@ -77,10 +75,9 @@ pub(super) fn check_waypoints(
             && waypoint.places.keys().all(|&m| m < system.markers.len())
             && given.all(|(_, value)| value.is_finite())
             && waypoint.angles.iter().all(of_joint);
-        let found = || format!("{waypoint:?}");
-        let expected =
-            "a finite place of a marker or joint at a part of the duration above 0 and below 1";
-        require(holds, "waypoint", found, expected)?;
+        require!(holds, "waypoint";
+            found("{waypoint:?}"),
+            expected "a finite place of a marker or joint at a part of the duration above 0 and below 1");
     }
     Ok(())
 }

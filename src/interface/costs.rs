@@ -1,18 +1,20 @@
 //! Costs of a control problem in addition to its voltages: energies of sources, squared deviations of markers and joints, along the motion of
-//! tensions, fields, currents, powers and rates; and waypoints. [`Control::minimise`] takes the same quantities at the end.
+//! tensions, fields, currents, powers and rates; waypoints; and limits. [`Control::minimise`] takes the same quantities at the end.
 
+use crate::control::problem;
 use crate::control::problem::{
-    self, CostFunction, During, EnergyCost, Place, QuantityCost, SourceEnergy, Waypoint,
+    CostFunction, During, EnergyCost, Limit, Place, QuantityCost, SourceEnergy, Waypoint,
 };
 use crate::interface::builder::builder;
 use crate::interface::control::Control;
 use crate::interface::error::{Result, require};
 use crate::interface::handle::Handle;
-use crate::math::Signal;
+use crate::math::{Signal, Vector};
 use crate::model::system::{Joint, Marker, Muscle};
-use crate::model::{Pulling, Quantity, System};
+use crate::model::{FieldPlace, Pulling, Quantity, Reaction, System, What};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
+use std::ops::RangeInclusive;
 
 impl Control {
     /// Minimises the electrical energy from the sources of lumped muscles, with a weight per J; energy that flows back is negative, and
@@ -34,8 +36,9 @@ impl Control {
     ) -> Result<problem::Control> {
         let weight = self.peak_voltage;
         let is_sought = weight == 0.0 || control.minimise_peak_voltage(weight, system);
-        let found = || "a cost of the peak voltage where all voltages are given".to_owned();
-        require(is_sought, "control", found, "a voltage that is sought")?;
+        require!(is_sought, "control";
+            found("a cost of the peak voltage where all voltages are given"),
+            expected "a voltage that is sought");
         Ok(control)
     }
 
@@ -45,7 +48,10 @@ impl Control {
             energy,
             weight,
         };
-        self.objective.energies.extend(muscles.iter().map(cost));
+        self.task
+            .objective
+            .energies
+            .extend(muscles.iter().map(cost));
         self
     }
 
@@ -78,7 +84,7 @@ impl Control {
             places: BTreeMap::from([(marker.index(), Place(place))]),
             ..waypoint(part)
         };
-        self.objective.quantities.extend(near.costs(weight));
+        self.task.objective.quantities.extend(near.costs(weight));
         self
     }
 
@@ -137,12 +143,12 @@ builder! {
     /// A marker is at a place in mm, in the directions that have a value, at the instant nearest to a part of the duration.
     marker_passes(marker: Handle<Marker>, place: [Option<f64>; 3], part: f64) |of| {
         let places = BTreeMap::from([(marker.index(), Place(place))]);
-        of.waypoints.push(Waypoint { places, ..waypoint(part) });
+        of.task.waypoints.push(Waypoint { places, ..waypoint(part) });
     };
     /// A joint has a coordinate in rad or mm at the instant nearest to a part of the duration.
     joint_passes(joint: Handle<Joint>, coordinate: f64, part: f64) |of| {
         let angles = BTreeMap::from([(joint.index(), coordinate)]);
-        of.waypoints.push(Waypoint { angles, ..waypoint(part) });
+        of.task.waypoints.push(Waypoint { angles, ..waypoint(part) });
     };
 }
 
@@ -203,5 +209,72 @@ fn waypoint(part: f64) -> Waypoint {
         part,
         name: format!("waypoint at {part} of the duration"),
         ..Waypoint::default()
+    }
+}
+
+/// Declares limits of quantities of parts to a range.
+macro_rules! ranges {
+    ($($(#[$about:meta])* $name:ident($part:ident: $of:ty $(, $further:ident: $kind:ty)?) $limit:ident $what:expr;)*) => {
+        impl Control {
+            $($(#[$about])*
+            pub fn $name(self, $part: Handle<$of> $(, $further: $kind)?, range: RangeInclusive<f64>) -> Self {
+                let $part = $part.index();
+                let (min, max) = range.into_inner();
+                self.limited(Limit::$limit($what, [min, max]))
+            })*
+        }
+    };
+}
+
+ranges! {
+    /// Range of the stretch of a muscle.
+    stretch_within(muscle: Muscle) new What::Stretch(muscle);
+    /// Range of the force in N with which a lumped muscle pulls its ends together, in the middle of the intervals.
+    tension_within(muscle: Muscle) new What::Tension(Pulling::Muscle(muscle));
+    /// Range of the coordinate of a joint in rad or mm.
+    joint_within(joint: Joint) new What::Joint { joint, near: 0.0 };
+    /// Range of the mean rate of the coordinate of a joint in each interval in rad/ms or mm/ms.
+    joint_rate_within(joint: Joint) of_rate What::Joint { joint, near: 0.0 };
+    /// Range of the current in A of the source of a lumped muscle: behind a resistor its mean in each interval, otherwise that between the
+    /// middles of neighbouring intervals.
+    current_within(muscle: Muscle) new What::Current(muscle);
+    /// Range of the rate of the voltage of a muscle in V/ms between the middles of neighbouring intervals.
+    voltage_rate_within(muscle: Muscle) of_rate What::Voltage(muscle);
+    /// Range of the power in W of the source of a lumped muscle, at the times of a current.
+    power_within(muscle: Muscle) new What::Power(muscle);
+    /// Range in N of the component, along a unit vector of the ground frame, of the force from the parent of a joint on its child, at the
+    /// instants between intervals.
+    reaction_within(joint: Joint, along: Vector) new What::Reaction { joint, of: Reaction::Force, along };
+    /// Range in N mm of the component, along a unit vector of the ground frame, of the torque from the parent of a joint on its child about the
+    /// point of the joint, at the instants between intervals.
+    reaction_torque_within(joint: Joint, along: Vector) new What::Reaction { joint, of: Reaction::Torque, along };
+    /// Range of the size of the mean velocity of a marker in each interval in mm/ms.
+    marker_speed_within(marker: Marker) new What::Speed(marker);
+}
+
+impl Control {
+    /// Greatest true electric field of muscles in V/mm.
+    pub fn field_below(mut self, muscles: &[Handle<Muscle>], max: f64) -> Self {
+        let limit = |muscle: &Handle<Muscle>| {
+            let place = FieldPlace::Muscle(muscle.index());
+            Limit::below(What::Field(place), max)
+        };
+        self.task.limits.extend(muscles.iter().map(limit));
+        self
+    }
+
+    /// Makes the limit that was added last hold only at a part of the duration, above 0 and at most 1, the end: at the instant nearest to it, or in
+    /// the interval before that instant. Nothing without a limit.
+    pub fn only_at(mut self, part: f64) -> Self {
+        if let Some(last) = self.task.limits.pop() {
+            self.task.limits.push(last.at_part(part));
+        }
+        self
+    }
+
+    /// Adds a limit of any quantity, such as the clearance of a marker from a plane.
+    pub fn limited(mut self, limit: Limit) -> Self {
+        self.task.limits.push(limit);
+        self
     }
 }

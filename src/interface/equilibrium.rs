@@ -38,13 +38,12 @@ impl Equilibrium {
         let system = &system.checked()?;
         let mut voltages = vec![0.0; system.sources().len()];
         for (input, value) in &self.inputs {
-            let found = || format!("{value} of {input:?}");
-            require(value.is_finite(), "equilibrium", found, "a finite number")?;
+            require!(value.is_finite(), "equilibrium";
+                found("{value} of {input:?}"), expected "a finite number");
             voltages[source(input, system)?] = *value;
         }
-        let found = || "an instantaneous response".to_owned();
         let holds = self.response == Response::Relaxed || system.has_branches();
-        require(holds, "equilibrium", found, NO_BRANCHES)?;
+        require!(holds, "equilibrium"; found("an instantaneous response"), expected NO_BRANCHES);
         let task = AtRest {
             voltages,
             coordinates: None,

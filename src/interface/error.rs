@@ -67,22 +67,22 @@ pub enum Error {
 /// A result, or why there is none.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Fails where something does not hold.
-pub(super) fn require(
-    holds: bool,
-    what: &'static str,
-    found: impl FnOnce() -> String,
-    expected: &'static str,
-) -> Result<()> {
-    match holds {
-        true => Ok(()),
-        false => Err(Error::Problem {
-            what,
-            found: found(),
-            expected,
-        }),
-    }
+/// Fails at an entry of a problem where something does not hold, with the value found, as it is formatted, and the value expected.
+macro_rules! require {
+    ($holds:expr, $what:expr; found($($found:tt)+), expected $expected:expr) => {
+        match $holds {
+            true => {}
+            false => {
+                return Err($crate::interface::error::Error::Problem {
+                    what: $what,
+                    found: format!($($found)+),
+                    expected: $expected,
+                });
+            }
+        }
+    };
 }
+pub(super) use require;
 
 /// A function of time for each source of a system, zero where nothing is said.
 pub(super) fn signals(
@@ -92,9 +92,8 @@ pub(super) fn signals(
 ) -> Result<Vec<Signal>> {
     let mut signals = vec![Signal::Constant(0.0); system.sources().len()];
     for (input, signal) in inputs {
-        let found = || format!("{signal:?} of {input:?}");
-        let expected = "finite numbers, and times that grow";
-        require(signal.is_sound(), what, found, expected)?;
+        require!(signal.is_sound(), what;
+            found("{signal:?} of {input:?}"), expected "finite numbers, and times that grow");
         signals[source(input, system)?] = signal.clone();
     }
     Ok(signals)

@@ -40,23 +40,17 @@ pub struct Recording {
 #[derive(Clone, Debug)]
 pub struct Tension(Quantity);
 
-impl From<Handle<Muscle>> for Tension {
-    fn from(muscle: Handle<Muscle>) -> Self {
-        Self(Quantity::tension(Pulling::Muscle(muscle.index())))
-    }
+/// Declares kinds of parts that pull.
+macro_rules! pulling {
+    ($($part:ident)*) => {$(
+        impl From<Handle<$part>> for Tension {
+            fn from(part: Handle<$part>) -> Self {
+                Self(Quantity::tension(Pulling::$part(part.index())))
+            }
+        }
+    )*};
 }
-
-impl From<Handle<Spring>> for Tension {
-    fn from(spring: Handle<Spring>) -> Self {
-        Self(Quantity::tension(Pulling::Spring(spring.index())))
-    }
-}
-
-impl From<Handle<Tendon>> for Tension {
-    fn from(tendon: Handle<Tendon>) -> Self {
-        Self(Quantity::tension(Pulling::Tendon(tendon.index())))
-    }
-}
+pulling!(Muscle Spring Tendon);
 
 impl Recording {
     /// A recording without readings; the name is for messages.
@@ -149,18 +143,17 @@ impl Recording {
         let times = channels.iter().flat_map(|one| &one.readings);
         let times = in_order(times.map(|reading| reading.time));
         let is_open = self.time_offset.is_none() && self.regime == Regime::Motion;
-        let found = || format!("{} ms at the first reading", times[0]);
-        let expected = "a \"time_offset\": that time if the motion begins then, or 0";
         let is_late = is_open && begin_late(&times);
-        require(!is_late, "recording", found, expected)?;
+        require!(!is_late, "recording";
+            found("{} ms at the first reading", times[0]),
+            expected "a \"time_offset\": that time if the motion begins then, or 0");
         let all = channels.iter().flat_map(|one| &one.readings);
         for reading in all {
             let numbers = [reading.time, reading.value];
             let holds = numbers.iter().all(|x| x.is_finite()) && reading.time >= 0.0;
-            let found = || format!("{} at {} ms", reading.value, reading.time);
-            let expected = "finite readings at times from 0 on";
-            let holds = holds && reading.deviation > 0.0;
-            require(holds, "recording", found, expected)?;
+            require!(holds && reading.deviation > 0.0, "recording";
+                found("{} at {} ms", reading.value, reading.time),
+                expected "finite readings at times from 0 on");
         }
         Ok(problem::Recording {
             name: self.name.clone(),
@@ -240,28 +233,25 @@ impl Identification {
         let system = &system.checked()?;
         for parameter in &self.parameters {
             let [lower, guess, upper] = [parameter.lower, parameter.guess, parameter.upper];
-            let found = || format!("{:?}, {guess} in {lower}..={upper}", parameter.name);
             let holds = lower < upper && (lower..=upper).contains(&guess) && guess.is_finite();
-            let expected = "a finite guess within bounds";
-            require(holds, "identification", found, expected)?;
+            require!(holds, "identification";
+                found("{:?}, {guess} in {lower}..={upper}", parameter.name),
+                expected "a finite guess within bounds");
         }
         let resolved = |one: &Recording| one.resolve(system, &self.parameters);
         let recordings = self.recordings.iter().map(resolved);
         let recordings: Vec<_> = recordings.collect::<Result<_>>()?;
-        let has_fitted = recordings.iter().any(|one| !one.is_held_out);
-        let found = || format!("{} recordings", recordings.len());
-        let expected = "one or more to which constants are fitted";
-        require(has_fitted, "identification", found, expected)?;
+        require!(recordings.iter().any(|one| !one.is_held_out), "identification";
+            found("{} recordings", recordings.len()),
+            expected "one or more to which constants are fitted");
         let step = self.step.is_none_or(|step| step > 0.0 && step.is_finite());
-        let found = || format!("{:?}", self.step);
-        require(step, "identification", found, "a positive step")?;
+        require!(step, "identification"; found("{:?}", self.step), expected "a positive step");
         let prior = |(name, [value, deviation]): &(String, [f64; 2])| {
             let constant = self.parameters.iter().position(|one| one.name == *name);
-            let found = || format!("the prior {value} ± {deviation} of {name:?}");
             let holds = constant.is_some() && value.is_finite();
-            let holds = holds && *deviation > 0.0 && deviation.is_finite();
-            let expected = "a finite value and a positive deviation of a free parameter";
-            require(holds, "identification", found, expected)?;
+            require!(holds && *deviation > 0.0 && deviation.is_finite(), "identification";
+                found("the prior {value} ± {deviation} of {name:?}"),
+                expected "a finite value and a positive deviation of a free parameter");
             Ok(Prior {
                 constant: constant.unwrap_or_default(),
                 value: *value,

@@ -1,7 +1,7 @@
 //! The library as a program uses it: systems built part by part, simulated and steered in memory.
 //!
 //! - `handle`, `parts`, `components`: systems and their parts, with defaults; checked when they are used.
-//! - `state`, `free_parameters`, `equilibrium`, `simulation`, `control`, `limits`, `costs`, `cost_checks`, `identification`: the tasks of a system.
+//! - `state`, `free_parameters`, `equilibrium`, `simulation`, `control`, `costs`, `cost_checks`, `identification`: the tasks of a system.
 //! - `motion`, `error`: results and errors; `builder`: declaration of methods.
 
 mod builder;
@@ -14,7 +14,6 @@ mod error;
 mod free_parameters;
 mod handle;
 mod identification;
-mod limits;
 mod motion;
 mod parts;
 mod simulation;

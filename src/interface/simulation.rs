@@ -85,20 +85,17 @@ impl Simulation {
 
     fn resolve(&self, system: &System) -> Result<problem::Simulation> {
         let positive = |v: f64| v > 0.0 && v.is_finite();
-        let length = || format!("a duration of {} ms", self.duration);
-        let holds = positive(self.duration);
-        require(holds, "simulation", length, "a positive one")?;
+        require!(positive(self.duration), "simulation";
+            found("a duration of {} ms", self.duration), expected "a positive one");
         if let Some(step) = self.step {
-            let holds = positive(step) && step <= self.duration;
-            let found = || format!("steps of {step} ms");
-            let expected = "positive steps within the duration";
-            require(holds, "simulation", found, expected)?;
+            require!(positive(step) && step <= self.duration, "simulation";
+                found("steps of {step} ms"), expected "positive steps within the duration");
         }
         let controlled = self.step.is_none();
         let holds = !controlled || self.integrator == Integrator::Midpoint;
-        let found = || format!("{} without a step", self.integrator.name());
-        let expected = "a step: only the midpoint rule chooses its steps";
-        require(holds, "simulation", found, expected)?;
+        require!(holds, "simulation";
+            found("{} without a step", self.integrator.name()),
+            expected "a step: only the midpoint rule chooses its steps");
         let sources = system.sources().len();
         let signals = signals(&self.voltages, "simulation", system)?;
         Ok(problem::Simulation {

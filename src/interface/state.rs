@@ -47,12 +47,12 @@ impl State {
 
     pub(super) fn resolve(&self, system: &System, sources: usize) -> Result<BoundaryState> {
         Ok(match self {
-            Self::Reference => of_joints(BTreeMap::new()),
+            Self::Reference => BoundaryState::at_joints(BTreeMap::new()),
             Self::RestAt(voltages) => {
                 let mut row = vec![0.0; sources];
                 for (input, voltage) in voltages {
-                    let found = || format!("{voltage} of {input:?}");
-                    require(voltage.is_finite(), "state", found, "a finite input")?;
+                    require!(voltage.is_finite(), "state";
+                        found("{voltage} of {input:?}"), expected "a finite input");
                     row[source(input, system)?] = *voltage;
                 }
                 BoundaryState::RestAtVoltages(row, Rest::Everything)
@@ -62,26 +62,27 @@ impl State {
                     let joints = &system.joints;
                     let named = joints.get(joint.index());
                     let holds = named.is_some_and(|j| j.has_coordinate()) && value.is_finite();
-                    let found = || format!("{value} of joint {}", joint.index());
-                    let expected = "a finite value of a joint with one coordinate";
-                    require(holds, "state", found, expected)?;
+                    require!(holds, "state";
+                        found("{value} of joint {}", joint.index()),
+                        expected "a finite value of a joint with one coordinate");
                 }
                 let values = values.iter().map(|&(joint, value)| (joint.index(), value));
-                of_joints(values.collect())
+                BoundaryState::at_joints(values.collect())
             }
             Self::Free => BoundaryState::Free,
             Self::Periodic => BoundaryState::Periodic,
             Self::Places { markers, bodies } => {
                 for (marker, place) in markers {
                     let finite = place.iter().flatten().all(|x| x.is_finite());
-                    let holds = marker.index() < system.markers.len() && finite;
-                    let found = || format!("{place:?} of marker {}", marker.index());
-                    require(holds, "state", found, "a finite place of a marker")?;
+                    require!(marker.index() < system.markers.len() && finite, "state";
+                        found("{place:?} of marker {}", marker.index()),
+                        expected "a finite place of a marker");
                 }
                 for (body, orientation) in bodies {
                     let holds = body.index() < system.bodies.len() && orientation.is_sound();
-                    let found = || format!("{orientation:?} of body {}", body.index());
-                    require(holds, "state", found, "unit vectors and a finite angle")?;
+                    require!(holds, "state";
+                        found("{orientation:?} of body {}", body.index()),
+                        expected "unit vectors and a finite angle");
                 }
                 let places = markers.iter().map(|&(m, place)| (m.index(), Place(place)));
                 let turned = bodies.iter().map(|&(b, turned)| (b.index(), turned));
@@ -95,9 +96,9 @@ impl State {
             Self::Markers(places) => {
                 for (marker, place) in places {
                     let finite = place.iter().all(|x| x.is_finite());
-                    let holds = marker.index() < system.markers.len() && finite;
-                    let found = || format!("{:?} of marker {}", place.as_slice(), marker.index());
-                    require(holds, "state", found, "a finite place of a marker")?;
+                    require!(marker.index() < system.markers.len() && finite, "state";
+                        found("{:?} of marker {}", place.as_slice(), marker.index()),
+                        expected "a finite place of a marker");
                 }
                 let places = places
                     .iter()
@@ -110,13 +111,5 @@ impl State {
                 }
             }
         })
-    }
-}
-
-fn of_joints(angles: BTreeMap<usize, f64>) -> BoundaryState {
-    BoundaryState::JointAngles {
-        angles,
-        rates: BTreeMap::new(),
-        velocities: BTreeMap::new(),
     }
 }

@@ -272,11 +272,7 @@ fn coupling(program: &Transcription<'_>, model: &Model, row: &str, column: &str)
 
 /// The control problem whose program has the derivatives of a task.
 fn as_control(task: Task, system: &System) -> Control {
-    let at_reference = || BoundaryState::JointAngles {
-        angles: BTreeMap::new(),
-        rates: BTreeMap::new(),
-        velocities: Default::default(),
-    };
+    let at_reference = || BoundaryState::at_joints(BTreeMap::new());
     let without_goal = |start, step, voltages, coordinates: Option<Coordinates>| {
         let voltages = Voltages::Constant(voltages);
         let duration = step * INTERVALS as f64;

@@ -32,8 +32,8 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law> {
     let measured: Vec<Measured> = scope.key("measured").each(&record.measured, of_measured)?;
     let inputs = At::new(&scope, system).key("inputs");
     let inputs: Vec<(LawInput, f64)> = inputs.each(&record.inputs, of_input)?;
-    let (inputs, of_inputs): (Vec<LawInput>, Vec<f64>) = inputs.into_iter().unzip();
-    let (read, acting) = factors((&measured, &inputs, &of_inputs), &record, &scope)?;
+    let (inputs, of_inputs) = inputs.into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
+    let (read, acting) = factors(&measured, &inputs, &of_inputs, &record, &scope)?;
     let point = |record: &PointRecord, place: &Scope<'_>| {
         let measured = &read[..measured.len()];
         Ok::<Point, SceneError>(Point {
@@ -49,14 +49,13 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law> {
     let place = scope.key("intervals");
     refuse!(if record.intervals.is_empty(), place; found "none", expected "one interval or more");
     let points: Vec<Point> = place.each(&record.intervals, point)?;
-    let held = record.held.as_ref();
-    let held = held.map(|one| point(one, &scope.key("held"))).transpose()?;
+    let held = scope.optional("held", &record.held, |at, one| point(one, at))?;
     let markers = markers(&record, points.len() + 1, system);
     let of_observer = record.observer.as_ref().map(|one| {
         let forces = one.lasting.as_ref().map_or(0, |one| one.forces.len());
         let factors = [&read[..measured.len() + forces], &acting];
         let place = scope.key("observer");
-        observer(one, (&measured, points.len()), factors, &place)
+        observer(one, &measured, points.len(), factors, &place)
     });
     let observer = of_observer.transpose()?;
     if observer
@@ -83,7 +82,9 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law> {
 
 /// Factors of the units of all columns of a gain, and of the inputs in the units in which they act.
 fn factors(
-    (measured, inputs, of_inputs): (&[Measured], &[LawInput], &[f64]),
+    measured: &[Measured],
+    inputs: &[LawInput],
+    of_inputs: &[f64],
     record: &LawRecord,
     scope: &Scope<'_>,
 ) -> Result<(Vec<f64>, Vec<f64>)> {
@@ -226,7 +227,8 @@ fn matrix(
 /// The observer of a law, over its measured quantities and inputs with these factors.
 fn observer(
     record: &ObserverRecord,
-    (measured, intervals): (&[Measured], usize),
+    measured: &[Measured],
+    intervals: usize,
     [state, acting]: [&[f64]; 2],
     place: &Scope<'_>,
 ) -> Result<Observer> {
@@ -255,7 +257,6 @@ fn observer(
     let of_intervals = place.key("intervals");
     refuse!(if record.intervals.len() != intervals, of_intervals;
         found record.intervals.len(), expected format!("{intervals}, one for each interval"));
-    let held = record.held.as_ref();
     let lasting = record.lasting.as_ref().map(|one: &LastingRecord| {
         let on = one.forces.iter().map(|force| Forced {
             name: force.on.clone(),
@@ -275,9 +276,7 @@ fn observer(
         jump,
         lasting: lasting.transpose()?,
         points: of_intervals.each(&record.intervals, filter)?,
-        held: held
-            .map(|one| filter(one, &place.key("held")))
-            .transpose()?,
+        held: place.optional("held", &record.held, |at, one| filter(one, at))?,
         readings,
     })
 }

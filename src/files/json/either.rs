@@ -1,4 +1,5 @@
-//! Values that are written as a scalar or as an object, or as `"auto"` or a value, read without losing the place of an error.
+//! Values that are written as a scalar or as an object, as a number or a text, or as `"auto"` or a value, read without losing the place of an
+//! error.
 
 use serde::Deserialize;
 use serde::de::value::MapAccessDeserializer;
@@ -38,6 +39,39 @@ impl<'de, S: Deserialize<'de>, O: Deserialize<'de>, T> Visitor<'de> for Either<S
 
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<T, A::Error> {
         O::deserialize(MapAccessDeserializer::new(map)).map(self.object)
+    }
+}
+
+/// Visits a number or a text; errors of the functions that read them name the value found.
+pub(crate) struct Scalar<T> {
+    pub(crate) expected: fn() -> String,
+    pub(crate) number: fn(f64) -> Result<T, String>,
+    pub(crate) text: fn(&str) -> Result<T, String>,
+}
+
+impl<T> Visitor<'_> for Scalar<T> {
+    type Value = T;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&(self.expected)())
+    }
+
+    fn visit_f64<E: Error>(self, number: f64) -> Result<T, E> {
+        let read = (self.number)(number);
+        read.map_err(|found| E::invalid_value(Unexpected::Other(&found), &self))
+    }
+
+    fn visit_i64<E: Error>(self, number: i64) -> Result<T, E> {
+        self.visit_f64(number as f64)
+    }
+
+    fn visit_u64<E: Error>(self, number: u64) -> Result<T, E> {
+        self.visit_f64(number as f64)
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<T, E> {
+        let read = (self.text)(text);
+        read.map_err(|found| E::invalid_value(Unexpected::Other(&found), &self))
     }
 }
 

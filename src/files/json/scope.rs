@@ -50,6 +50,28 @@ impl<'a> Scope<'a> {
         list.iter().enumerate().map(make).collect()
     }
 
+    /// Makes a value of each entry of an object here by its name.
+    pub(crate) fn each_named<'s, S: 's, T, C: FromIterator<T>>(
+        &self,
+        map: impl IntoIterator<Item = (&'s String, &'s S)>,
+        make: impl Fn(&str, &S, &Self) -> Result<T>,
+    ) -> Result<C> {
+        let map = map.into_iter();
+        map.map(|(name, one)| make(name, one, &self.key(name)))
+            .collect()
+    }
+
+    /// Makes a value of what is written under a key, where something is.
+    pub(crate) fn optional<S, T>(
+        &self,
+        key: &str,
+        written: &Option<S>,
+        make: impl FnOnce(&Self, &S) -> Result<T>,
+    ) -> Result<Option<T>> {
+        let make = |one| make(&self.key(key), one);
+        written.as_ref().map(make).transpose()
+    }
+
     /// Returns the error of a value here that is not the expected one.
     pub(crate) fn wrong(
         &self,
@@ -175,17 +197,6 @@ impl<'a> Scope<'a> {
         Ok(weight)
     }
 
-    /// A quantity that is zero or more; zero leaves no trace.
-    pub(crate) fn absent_or_positive<M: PhysicalQuantity>(
-        &self,
-        quantity: Option<&Quantity<M>>,
-    ) -> Result<Option<f64>> {
-        match quantity {
-            Some(quantity) if quantity.value() != 0.0 => self.positive(quantity).map(Some),
-            _ => Ok(None),
-        }
-    }
-
     /// The one entry that is there.
     pub(crate) fn exactly_one<T, const N: usize>(
         &self,
@@ -237,8 +248,13 @@ impl<'a> Scope<'a> {
     }
 }
 
-/// Refuses what is found at a place if something holds.
+/// Refuses what is found at a place if something holds, or is there.
 macro_rules! refuse {
+    (if let $there:pat = $of:expr, $at:expr; found $found:expr, expected $expected:expr) => {
+        if let $there = $of {
+            return Err($at.wrong($found.to_string(), $expected));
+        }
+    };
     (if $holds:expr, $at:expr; found $found:expr, expected $expected:expr) => {
         if $holds {
             return Err($at.wrong($found.to_string(), $expected));

@@ -2,11 +2,10 @@
 
 use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse};
-use crate::files::problem::spec_voltages::VoltageMap;
 use crate::files::scene::graph::tree_freedoms;
 use crate::files::scene::names::names;
 use crate::files::units::quantity::{
-    Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity,
+    Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity, Voltage,
 };
 use crate::model::system::{JointKind, Source, System, voltage_sources};
 use crate::model::{Coordinates, PartKind};
@@ -20,6 +19,9 @@ pub(crate) const A_SOURCE: &str = "the name of a muscle or of a driven electrode
 /// Keys that give a material an electric term, for messages.
 pub(crate) const ELECTRIC_KEYS: &str =
     "a material with \"relative_permittivity\", or \"c1\" and \"c2\"";
+
+/// Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
+pub type VoltageMap = BTreeMap<String, Quantity<Voltage>>;
 
 /// A place in a problem, with the system of its scene.
 #[derive(Clone)]
@@ -79,48 +81,30 @@ impl<'a> At<'a> {
         self.scope.each(list, make)
     }
 
+    /// Makes a value of what is written under a key, where something is.
+    pub(crate) fn optional<S, T>(
+        &self,
+        key: &str,
+        written: &Option<S>,
+        make: impl FnOnce(&Self, &S) -> Result<T>,
+    ) -> Result<Option<T>> {
+        let make = |one| make(&self.key(key), one);
+        written.as_ref().map(make).transpose()
+    }
+
     /// Makes a value of each entry of an object here by its name.
     pub(crate) fn each_named<'s, S: 's, T, C: FromIterator<T>>(
         &self,
         map: impl IntoIterator<Item = (&'s String, &'s S)>,
         make: impl Fn(&str, &S, &Self) -> Result<T>,
     ) -> Result<C> {
-        let make = |(name, one): (&String, &S)| make(name, one, &self.key(name));
-        map.into_iter().map(make).collect()
+        let make =
+            |name: &str, one: &S, entry: &Scope<'a>| make(name, one, &self.inside(entry.clone()));
+        self.scope.each_named(map, make)
     }
 
     fn part(&self, name: &str, kind: PartKind, expected: &str) -> Result<usize> {
         self.find(name, &kind.names(self.system), expected)
-    }
-
-    /// The body of a name that stands here.
-    pub(crate) fn body(&self, name: &str) -> Result<usize> {
-        self.part(name, PartKind::Body, "the name of a body")
-    }
-
-    /// The joint of a name.
-    pub(crate) fn joint(&self, name: &str) -> Result<usize> {
-        self.part(name, PartKind::Joint, "the name of a joint")
-    }
-
-    /// The muscle of a name.
-    pub(crate) fn muscle(&self, name: &str) -> Result<usize> {
-        self.part(name, PartKind::Muscle, "the name of a muscle")
-    }
-
-    /// The marker of a name.
-    pub(crate) fn marker(&self, name: &str) -> Result<usize> {
-        self.part(name, PartKind::Marker, "the name of a marker")
-    }
-
-    /// The spring of a name.
-    pub(crate) fn spring(&self, name: &str) -> Result<usize> {
-        self.part(name, PartKind::Spring, "the name of a spring")
-    }
-
-    /// The tendon of a name.
-    pub(crate) fn tendon(&self, name: &str) -> Result<usize> {
-        self.part(name, PartKind::Tendon, "the name of a tendon")
     }
 
     /// The elastic block of a name, of those of the scene.
@@ -223,6 +207,29 @@ impl<'a> At<'a> {
             found "\"reduced\", though the joints close a loop", expected "\"redundant\"");
         Ok(spec.map(Into::into))
     }
+}
+
+/// Declares how parts are found whose names stand at a place.
+macro_rules! named_parts {
+    ($($name:ident: $kind:ident,)*) => {
+        impl At<'_> {
+            $(
+                #[doc = concat!("The ", stringify!($name), " of a name that stands here.")]
+                pub(crate) fn $name(&self, name: &str) -> Result<usize> {
+                    self.part(name, PartKind::$kind, concat!("the name of a ", stringify!($name)))
+                }
+            )*
+        }
+    };
+}
+
+named_parts! {
+    body: Body,
+    joint: Joint,
+    muscle: Muscle,
+    marker: Marker,
+    spring: Spring,
+    tendon: Tendon,
 }
 
 read_objects! {

@@ -1,18 +1,23 @@
-//! Conversion of a problem file to its task, with one voltage per source and indices for names.
+//! The problem file, and its conversion to a task, with one voltage per source and indices for names.
 
 use crate::control::problem::{AtRest, Task};
+use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, refuse, the_one};
-use crate::files::problem::at::At;
+use crate::files::problem::at::{At, CoordinatesSpec, VoltageMap};
 use crate::files::problem::control::control;
+use crate::files::problem::feedback::FeedbackSpec;
 use crate::files::problem::free::check_solution;
-use crate::files::problem::identify::identification;
+use crate::files::problem::identify::{IdentifySpec, identification};
 use crate::files::problem::loads::loads;
-use crate::files::problem::simulation::simulation;
-use crate::files::problem::spec::{EquilibriumSpec, ProblemSpec};
+use crate::files::problem::output::OutputSpec;
+use crate::files::problem::simulation::{SimulateSpec, simulation};
+use crate::files::problem::spec_control::ControlSpec;
 use crate::files::scene::constants::WrittenScene;
-use crate::files::signal::spec::SignalSpec;
+use crate::files::scene::spec::SceneSpec;
+use crate::files::signal::SignalSpec;
 use crate::files::units::quantity::{LoadSize, Quantity};
 use crate::model::{NO_BRANCHES, Response};
+use std::collections::BTreeMap;
 
 /// Most equilibria of a path.
 const MOST_POINTS: usize = 1_000_000;
@@ -61,4 +66,60 @@ fn equilibrium(spec: &EquilibriumSpec, at: &At<'_>) -> Result<Task> {
         response,
         path: spec.path,
     }))
+}
+
+read_objects! {
+    /// Task for a scene: exactly one of `simulate`, `equilibrium`, `control`, `identify`.
+    pub struct ProblemSpec {
+        /// JSON Schema of this file, for editors.
+        #[serde(rename = "$schema", default)]
+        #[expect(dead_code, reason = "read by editors only")]
+        pub(crate) schema: Option<String>,
+        /// Path of the scene file, relative to this file, or the scene itself.
+        pub scene: SceneSource,
+        /// Forward simulation.
+        pub simulate: Option<SimulateSpec>,
+        /// Static equilibrium.
+        pub equilibrium: Option<EquilibriumSpec>,
+        /// Optimal control.
+        pub control: Option<ControlSpec>,
+        /// Constants fitted to recordings.
+        pub identify: Option<IdentifySpec>,
+        /// Gains of a controller that keeps the optimal motion.
+        pub feedback: Option<FeedbackSpec>,
+        /// Part of a motion that tables, figures and page show.
+        pub output: Option<OutputSpec>,
+    }
+
+    /// A static equilibrium.
+    pub struct EquilibriumSpec {
+        /// Voltages by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not named.
+        pub voltages?: VoltageMap,
+        /// Loads by name, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
+        pub loads: BTreeMap<String, Quantity<LoadSize>>,
+        /// Coordinates.
+        pub coordinates: Option<CoordinatesSpec>,
+        /// Response of Maxwell branches; `relaxed` where not written.
+        pub response: Option<ResponseSpec>,
+        /// Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as pull-in.
+        pub path: Option<usize>,
+    }
+
+    /// Response of Maxwell branches to voltages and loads.
+    #[derive(Default)]
+    pub enum ResponseSpec: Response {
+        /// After a long time: branches carry nothing.
+        #[default]
+        Relaxed,
+        /// At once: branches are springs without stress in the reference configuration.
+        Instantaneous,
+    }
+
+    /// A scene by its path, or the scene itself.
+    pub either SceneSource("the path of a scene file or a scene") {
+        /// Path relative to the problem file.
+        Path: String,
+        /// The scene.
+        Inline: Box<SceneSpec>,
+    }
 }

@@ -4,8 +4,8 @@ use crate::control::problem::{ChangedScene, Identification, Recording, Task};
 use crate::files::changes::Changes;
 use crate::files::json::document::Document;
 use crate::files::json::scope::{Result, Scope, refuse};
-use crate::files::problem::spec::ProblemSpec;
-use crate::files::problem::spec_identify::IdentifySpec;
+use crate::files::problem::build::ProblemSpec;
+use crate::files::problem::identify::IdentifySpec;
 use crate::files::study::ChangesSpec;
 use crate::model::Parameter;
 use crate::model::system::System;
@@ -68,20 +68,18 @@ impl SceneChanges<'_> {
     pub(crate) fn add(
         &self,
         task: &mut Task,
-        (system, of_changed): (System, Task),
+        system: System,
+        of_changed: Task,
         document: &Document,
     ) -> Result<()> {
         let (Task::Identify(task), Task::Identify(other)) = (task, of_changed) else {
             unreachable!("an entry \"identify\" is that task");
         };
-        let is_same = |(a, b): (&Parameter, &Parameter)| {
-            [a.lower, a.upper, a.guess] == [b.lower, b.upper, b.guess]
-        };
-        let pairs = task.parameters.iter().zip(&other.parameters);
-        if let Some((sought, _)) = pairs.clone().find(|pair| !is_same(*pair)) {
-            let found = format!("a change of {}, which is sought", sought.name);
-            let expected = "changes of numbers that are not sought";
-            return Err(self.scope.wrong(found, expected));
+        let numbers = |of: &Parameter| [of.lower, of.upper, of.guess];
+        for (sought, other) in task.parameters.iter().zip(&other.parameters) {
+            refuse!(if numbers(sought) != numbers(other), self.scope;
+                found format!("a change of {}, which is sought", sought.name),
+                expected "changes of numbers that are not sought");
         }
         let Identification {
             parameters,
@@ -97,11 +95,11 @@ impl SceneChanges<'_> {
         task.recordings.extend(recordings.into_iter().map(changed));
         task.candidates.extend(candidates.into_iter().map(changed));
         if let Some(spec) = written(document)? {
-            let names: Vec<&String> = spec.recordings.iter().map(|one| &one.name).collect();
+            let names = spec.recordings.iter().map(|one| &one.name);
+            let candidates = spec.candidates.iter().map(|one| &one.name);
+            let names: Vec<&String> = names.into_iter().chain(candidates).collect();
             let place = |one: &Recording| names.iter().position(|name| **name == one.name);
             task.recordings.sort_by_key(place);
-            let names: Vec<&String> = spec.candidates.iter().map(|one| &one.name).collect();
-            let place = |one: &Recording| names.iter().position(|name| **name == one.name);
             task.candidates.sort_by_key(place);
         }
         Ok(())

@@ -16,15 +16,12 @@ pub(super) struct Source<'a> {
 impl Recorded {
     /// The standard deviation that is written for all readings.
     pub(super) fn deviation(&self, spec: &MeasuredSpec, at: &Scope<'_>) -> Result<Option<f64>> {
-        let Some(written) = &spec.standard_deviation else {
-            return Ok(None);
-        };
-        let place = at.key("standard_deviation");
-        let value = place.value_as(written, &self.kind)?;
-        match value > 0.0 {
-            true => Ok(Some(value)),
-            false => Err(place.wrong(written.to_string(), "a positive one")),
-        }
+        let key = "standard_deviation";
+        at.optional(key, &spec.standard_deviation, |at, written| {
+            let value = at.value_as(written, &self.kind)?;
+            refuse!(if value <= 0.0, at; found written, expected "a positive one");
+            Ok(value)
+        })
     }
 
     /// The channel with readings.

@@ -8,9 +8,7 @@ use crate::control::problem::{
 use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::problem::at::{At, ELECTRIC_KEYS};
 use crate::files::problem::free::parameters;
-use crate::files::problem::goal::goal_state;
 use crate::files::problem::loads::{check_end, load, load_bounds, loads};
-use crate::files::problem::motions::check_alone;
 use crate::files::problem::quantities::keys::{at_the_end, limits, track};
 use crate::files::problem::quantities::muscle::amount_costs;
 use crate::files::problem::sensitivity::with_varied;
@@ -18,10 +16,8 @@ use crate::files::problem::spec_control::{
     ControlSpec, DurationSpec, EnergySpec, GuessSpec, IntervalsSpec, IntervalsWord, ObjectiveSpec,
     OptionSpec, SolverSpec,
 };
-use crate::files::problem::spec_voltages::VoltagesSpec;
-use crate::files::problem::state::{sought_hold, start_state};
-use crate::files::problem::voltages::{SOLUTION_PATH, over_time};
-use crate::files::problem::waypoints::{Course, waypoints};
+use crate::files::problem::state::{Course, goal_state, sought_hold, start_state, waypoints};
+use crate::files::problem::voltages::{SOLUTION_PATH, VoltagesSpec, over_time};
 use crate::files::scene::constants::WrittenScene;
 use crate::files::scene::graph::tree_freedoms;
 use crate::files::signal::signal;
@@ -44,16 +40,19 @@ pub(crate) fn control(
     at: &At<'_>,
 ) -> Result<Control> {
     let system = at.system;
-    check_alone(spec, at)?;
+    let no_motions = "none without \"motions\"";
+    refuse!(if !spec.shared_inputs.is_empty(), at.key("shared_inputs");
+        found "inputs in common", expected no_motions);
+    refuse!(if spec.combine.is_some(), at.key("combine");
+        found "an objective of several motions", expected no_motions);
     let duration = duration(&spec.duration, &at.key("duration"))?;
     let intervals = match spec.intervals {
-        Some(IntervalsSpec::Given(intervals)) => {
-            let place = at.key("intervals");
-            place.count(intervals, "interval", MOST_INTERVALS)?;
-            Some(intervals)
-        }
+        Some(IntervalsSpec::Given(intervals)) => Some(intervals),
         Some(IntervalsSpec::Word(IntervalsWord::Auto)) | None => None,
     };
+    at.optional("intervals", &intervals, |at, intervals| {
+        at.count(*intervals, "interval", MOST_INTERVALS)
+    })?;
     let takes_voltage = at.sources.iter().any(|source| source.takes_voltage);
     refuse!(if !takes_voltage && spec.load_bounds.is_empty(), at;
         found "a scene without any muscle or electrode that takes a voltage",
@@ -162,13 +161,9 @@ pub(crate) fn voltage_bounds(
     at: &Scope<'_>,
 ) -> Result<[f64; 2]> {
     let Some([lower, upper]) = &spec.voltage_bounds else {
-        return match is_needed {
-            true => Err(at.wrong(
-                "no key \"voltage_bounds\"",
-                "the bounds of the voltages that are sought",
-            )),
-            false => Ok([0.0; 2]),
-        };
+        refuse!(if is_needed, at;
+            found "no key \"voltage_bounds\"", expected "the bounds of the voltages that are sought");
+        return Ok([0.0; 2]);
     };
     let at = at.key("voltage_bounds");
     let bounds = [lower.value(), upper.value()];
@@ -224,12 +219,10 @@ pub(crate) fn check_rest_voltages(
     };
     for (s, (source, &voltage)) in at.sources.iter().zip(voltages).enumerate() {
         let outside = voltage < lower || voltage > upper;
-        if outside && source.takes_voltage && !is_given(s) {
-            let place = at.key("rest_at_voltages").key(&source.name);
-            let found = format!("{} V", shortest(voltage, 9));
-            let expected = format!("a voltage within the bounds {lower} V to {upper} V");
-            return Err(place.wrong(found, expected));
-        }
+        let is_sought = source.takes_voltage && !is_given(s);
+        refuse!(if is_sought && outside, at.key("rest_at_voltages").key(&source.name);
+            found format!("{} V", shortest(voltage, 9)),
+            expected format!("a voltage within the bounds {lower} V to {upper} V"));
     }
     Ok(())
 }
@@ -337,11 +330,10 @@ fn linear_solver(spec: &SolverSpec, at: &Scope<'_>) -> Result<LinearSolver> {
     let Some(named) = spec.linear_solver else {
         return Ok(LinearSolver::Auto);
     };
-    if let Some(OptionSpec::Text(other)) = spec.ipopt.get("linear_solver") {
-        let expected = "one linear solver: \"linear_solver\" of \"solver\" names another one";
-        let place = at.key("ipopt").key("linear_solver");
-        return Err(place.wrong(format!("{other:?}"), expected));
-    }
+    let other = spec.ipopt.get("linear_solver");
+    refuse!(if let Some(OptionSpec::Text(other)) = other, at.key("ipopt").key("linear_solver");
+        found format!("{other:?}"),
+        expected "one linear solver: \"linear_solver\" of \"solver\" names another one");
     Ok(named.into())
 }
 

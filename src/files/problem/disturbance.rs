@@ -6,8 +6,8 @@ use crate::files::json::document::Document;
 use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::json::set::{Override, value_at};
+use crate::files::problem::build::ProblemSpec;
 use crate::files::problem::feedback::DisturbanceSpec;
-use crate::files::problem::spec::ProblemSpec;
 use crate::model::System;
 use serde_json::Value;
 

@@ -164,46 +164,26 @@ fn status(file: &Path, at: &Scope<'_>) -> Result<Vec<String>> {
 /// Refuses a result of other bodies, joints or sources.
 fn check_names(ended: &Ended, path: &str, at: &At<'_>) -> Result<()> {
     let Configuration { bodies, joints } = &ended.configuration;
-    let with_coordinate = at
-        .system
-        .joints
-        .iter()
-        .filter(|joint| joint.has_coordinate());
+    let own_bodies: BTreeSet<_> = at.system.bodies.iter().map(|body| &body.name).collect();
+    let own_joints = at.system.joints.iter().filter(|one| one.has_coordinate());
+    let own_joints = own_joints.map(|joint| &joint.name).collect();
     for (kind, there, here) in [
-        (
-            "body",
-            bodies.keys().collect::<BTreeSet<_>>(),
-            at.system
-                .bodies
-                .iter()
-                .map(|body| &body.name)
-                .collect::<BTreeSet<_>>(),
-        ),
-        (
-            "joint",
-            joints.keys().collect(),
-            with_coordinate.map(|joint| &joint.name).collect(),
-        ),
+        ("body", bodies.keys().collect::<BTreeSet<_>>(), own_bodies),
+        ("joint", joints.keys().collect(), own_joints),
     ] {
-        let wrong = |words: String| {
-            let found = format!("{path:?}, {words}");
-            at.wrong(found, "a result of the same robot")
-        };
-        if let Some(name) = here.difference(&there).next() {
-            return Err(wrong(format!("which has no {kind} {name:?}")));
-        }
-        if let Some(name) = there.difference(&here).next() {
-            return Err(wrong(format!("whose {kind} {name:?} is not in the scene")));
-        }
+        refuse!(if let Some(name) = here.difference(&there).next(), at;
+            found format!("{path:?}, which has no {kind} {name:?}"),
+            expected "a result of the same robot");
+        refuse!(if let Some(name) = there.difference(&here).next(), at;
+            found format!("{path:?}, whose {kind} {name:?} is not in the scene"),
+            expected "a result of the same robot");
     }
     let mut named = ended.voltages.keys();
-    match named.find(|name| !at.sources.iter().any(|source| source.name == **name)) {
-        Some(name) => Err(at.wrong(
-            format!("{path:?}, whose muscle or electrode {name:?} is not in the scene"),
-            "a result of the same robot",
-        )),
-        None => Ok(()),
-    }
+    let unknown = named.find(|name| !at.sources.iter().any(|source| source.name == **name));
+    refuse!(if let Some(name) = unknown, at;
+        found format!("{path:?}, whose muscle or electrode {name:?} is not in the scene"),
+        expected "a result of the same robot");
+    Ok(())
 }
 
 /// The state of the method of a simulation; of a solve none is kept.

@@ -1,7 +1,7 @@
 //! Conversion of the feedback of a problem file to costs of deviations, and to a controller.
 
 use crate::control::problem::{FeedbackControl, Noise, Observation, Regulator};
-use crate::feedback::{Integral, Law};
+use crate::feedback::Law;
 use crate::files::feedback::read_law;
 use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse};
@@ -22,10 +22,7 @@ pub(crate) const ROUNDING: f64 = 1e-6;
 
 pub(crate) fn regulator(spec: &FeedbackSpec, at: &At<'_>) -> Result<Regulator> {
     let place = at.key("weights");
-    let weight = |key: &str, written: Option<f64>, unwritten: f64| match written {
-        Some(weight) => finite(weight, &place.key(key)),
-        None => Ok(unwritten),
-    };
+    let weight = |key: &str, written: Option<f64>, usual: f64| weight(key, written, usual, &place);
     let usual = Regulator::default();
     let weights = &spec.weights;
     let mut markers = Vec::new();
@@ -44,23 +41,12 @@ pub(crate) fn regulator(spec: &FeedbackSpec, at: &At<'_>) -> Result<Regulator> {
         markers,
         inputs,
         integral: weight("integral", weights.integral, usual.integral)?,
-        step: match &spec.step {
-            Some(step) => at.key("step").positive(step)?,
-            None => usual.step,
-        },
-        delay: at
-            .key("delay")
-            .absent_or_positive(spec.delay.as_ref())?
-            .unwrap_or(0.0),
-        terminal: match spec.terminal {
-            Some(terminal) => finite(terminal, &at.key("terminal"))?,
-            None => usual.terminal,
-        },
-        observer: spec
-            .observer
-            .as_ref()
-            .map(|spec| observation(spec, &at.key("observer")))
-            .transpose()?,
+        step: at
+            .optional("step", &spec.step, |at, step| at.positive(step))?
+            .unwrap_or(usual.step),
+        delay: or_zero("delay", &spec.delay, at)?,
+        terminal: self::weight("terminal", spec.terminal, usual.terminal, at)?,
+        observer: at.optional("observer", &spec.observer, observation)?,
     };
     let lasting = out.observer.as_ref().and_then(|one| one.lasting);
     refuse!(if out.integral > 0.0 && lasting.is_some(), place.key("integral");
@@ -72,7 +58,7 @@ pub(crate) fn regulator(spec: &FeedbackSpec, at: &At<'_>) -> Result<Regulator> {
     Ok(out)
 }
 
-fn observation(spec: &ObserverSpec, at: &At<'_>) -> Result<Observation> {
+fn observation(at: &At<'_>, spec: &ObserverSpec) -> Result<Observation> {
     let positive = |deviation: f64, place: &Scope<'_>| match deviation > 0.0 {
         true => Ok(deviation),
         false => Err(place.wrong(deviation.to_string(), "a positive standard deviation")),
@@ -89,27 +75,25 @@ fn observation(spec: &ObserverSpec, at: &At<'_>) -> Result<Observation> {
             Ok((at.moving_marker(name)?, at.positive(deviation)?))
         })?;
     let [inputs, rates] = Observation::USUAL;
-    let disturbance = |key: &str, written: Option<f64>, unwritten: f64| match written {
-        Some(part) => finite(part, &at.key(key)),
-        None => Ok(unwritten),
-    };
     let out = Observation {
         joints,
         markers,
-        inputs: disturbance("voltages", spec.voltages, inputs)?,
-        rates: disturbance("rates", spec.rates, rates)?,
-        lasting: match spec.lasting {
-            Some(part) if part > 0.0 && part.is_finite() => Some(part),
-            Some(part) => {
-                let expected = "a positive number, or none where no force lasts";
-                return Err(at.key("lasting").wrong(part.to_string(), expected));
-            }
-            None => None,
-        },
+        inputs: weight("voltages", spec.voltages, inputs, at)?,
+        rates: weight("rates", spec.rates, rates, at)?,
+        lasting: spec.lasting,
     };
+    if let Some(part) = spec.lasting {
+        refuse!(if !(part > 0.0 && part.is_finite()), at.key("lasting");
+            found part, expected "a positive number, or none where no force lasts");
+    }
     refuse!(if out.joints.is_empty() && out.markers.is_empty(), at;
         found "nothing that is measured", expected "\"joints\", \"markers\" or both");
     Ok(out)
+}
+
+/// The weight under a key, or the usual one.
+fn weight(key: &str, written: Option<f64>, usual: f64, at: &Scope<'_>) -> Result<f64> {
+    written.map_or(Ok(usual), |weight| finite(weight, &at.key(key)))
 }
 
 fn finite(weight: f64, place: &Scope<'_>) -> Result<f64> {
@@ -145,12 +129,11 @@ pub(crate) fn controller(
         Some(sample) => multiple(sample, step, &at.key("sample"))?,
         None => (law.h / step - 1e-6).ceil().max(1.0) * step,
     };
-    if law.observer.is_some() && (sample - law.h).abs() > ROUNDING * law.h {
-        let [sample, h] = [sample, law.h].map(|time| shortest(time, 9));
-        let expected =
-            format!("{h} ms, the interval of the observer, in steps of which it is a multiple");
-        return Err(at.key("sample").wrong(format!("{sample} ms"), expected));
-    }
+    let is_other = (sample - law.h).abs() > ROUNDING * law.h;
+    let h = shortest(law.h, 9);
+    refuse!(if law.observer.is_some() && is_other, at.key("sample");
+        found format!("{} ms", shortest(sample, 9)),
+        expected format!("{h} ms, the interval of the observer, in steps of which it is a multiple"));
     let noise = noise(&spec.noise, &at.key("noise"))?;
     refuse_unread(&noise, &law, &at.key("noise"))?;
     let predicted = (law.delay as f64 * law.h / step - 1e-6).ceil() * step;
@@ -182,12 +165,11 @@ fn delay(spec: &ControllerSpec, step: f64, at: &Scope<'_>) -> Result<Option<f64>
 }
 
 fn noise(of: &NoiseSpec, place: &Scope<'_>) -> Result<Noise> {
-    let angular = &place.key("angular_velocity");
     Ok(Noise {
-        angle: deviation(of.angle.as_ref(), &place.key("angle"))?,
-        length: deviation(of.length.as_ref(), &place.key("length"))?,
-        angular_velocity: deviation(of.angular_velocity.as_ref(), angular)?,
-        velocity: deviation(of.velocity.as_ref(), &place.key("velocity"))?,
+        angle: or_zero("angle", &of.angle, place)?,
+        length: or_zero("length", &of.length, place)?,
+        angular_velocity: or_zero("angular_velocity", &of.angular_velocity, place)?,
+        velocity: or_zero("velocity", &of.velocity, place)?,
         seed: of.seed,
     })
 }
@@ -199,22 +181,11 @@ fn planning(
     step: f64,
     at: &Scope<'_>,
 ) -> Result<FeedbackControl> {
-    if let Some(sample) = &spec.sample {
-        let expected = "none beside \"horizon\", which plans anew in each interval of its problem";
-        return Err(at.key("sample").wrong(sample.to_string(), expected));
-    }
+    refuse!(if let Some(sample) = &spec.sample, at.key("sample");
+        found sample,
+        expected "none beside \"horizon\", which plans anew in each interval of its problem");
     Ok(FeedbackControl {
-        law: Arc::new(Law {
-            measured: Vec::new(),
-            inputs: Vec::new(),
-            integral: Integral::default(),
-            h: 0.0,
-            delay: 0,
-            points: Vec::new(),
-            held: None,
-            observer: None,
-            markers: Vec::new(),
-        }),
+        law: Arc::default(),
         path: at
             .key("horizon")
             .key("problem")
@@ -226,8 +197,16 @@ fn planning(
     })
 }
 
-fn deviation<M: PhysicalQuantity>(written: Option<&Quantity<M>>, place: &Scope<'_>) -> Result<f64> {
-    Ok(place.absent_or_positive(written)?.unwrap_or(0.0))
+/// A quantity under a key that is zero or more; zero where not written.
+fn or_zero<M: PhysicalQuantity>(
+    key: &str,
+    written: &Option<Quantity<M>>,
+    at: &Scope<'_>,
+) -> Result<f64> {
+    match written {
+        Some(quantity) if quantity.value() != 0.0 => at.key(key).positive(quantity),
+        _ => Ok(0.0),
+    }
 }
 
 /// A positive multiple of the step in ms.
@@ -238,14 +217,10 @@ fn multiple<M: PhysicalQuantity>(
 ) -> Result<f64> {
     let time = place.positive(written)?;
     let steps = (time / step).round();
-    match steps >= 1.0 && (time / step - steps).abs() <= ROUNDING * steps {
-        true => Ok(steps * step),
-        false => {
-            let step = shortest(step, 9);
-            let expected = format!("a multiple of the step {step} ms");
-            Err(place.wrong(written.to_string(), expected))
-        }
-    }
+    let is_multiple = steps >= 1.0 && (time / step - steps).abs() <= ROUNDING * steps;
+    refuse!(if !is_multiple, place;
+        found written, expected format!("a multiple of the step {} ms", shortest(step, 9)));
+    Ok(steps * step)
 }
 
 read_objects! {

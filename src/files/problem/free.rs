@@ -19,9 +19,8 @@ pub(crate) fn parameters(
     scene: &WrittenScene<'_>,
     at: &Scope<'_>,
 ) -> Result<Vec<Parameter>> {
-    let parameter =
-        |(path, spec): (&String, &FreeSpec)| parameter(path, spec, scene, &at.key(path));
-    let parameters: Vec<Parameter> = map.iter().map(parameter).collect::<Result<_, _>>()?;
+    let parameter = |path: &str, spec: &FreeSpec, at: &Scope<'_>| parameter(path, spec, scene, at);
+    let parameters: Vec<Parameter> = at.each_named(map, parameter)?;
     check_parameters(scene.system, &parameters).map_err(|NotSought { parameter, reason }| {
         let place = at.key(&parameters[parameter].name);
         place.wrong(reason, "a constant that can be sought")

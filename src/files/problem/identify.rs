@@ -1,25 +1,24 @@
-//! Conversion of an identification in a problem file to its task.
+//! An identification in a problem file, and its conversion to a task.
 
 use crate::control::problem::{
     Identification, Prior, Reading, Recording, Regime, SoughtStart, begin_late,
 };
 use crate::files::columns::Columns;
+use crate::files::json::objects::read_objects;
 use crate::files::json::path::JsonPath;
 use crate::files::json::scope::{Result, Scope, refuse, the_one};
-use crate::files::problem::at::At;
+use crate::files::problem::at::{At, CoordinatesSpec};
 use crate::files::problem::channels::Source;
 use crate::files::problem::free::{FreeMap, parameters};
-use crate::files::problem::loads::driven;
+use crate::files::problem::loads::{LoadMap, driven};
 use crate::files::problem::quantities::entry::Recorded;
 use crate::files::problem::quantities::keys::MeasuredSpec;
-use crate::files::problem::spec_identify::{
-    CandidateSpec, ExperimentSpec, IdentifySpec, InputConstantsSpec, PriorSpec, RangeSpec,
-    RecordingSpec,
-};
-use crate::files::problem::spec_voltages::VoltagesSpec;
+use crate::files::problem::state::StartSpec;
+use crate::files::problem::voltages::VoltagesSpec;
 use crate::files::scene::constants::WrittenScene;
-use crate::files::signal::spec::{SignalCsvSpec, SignalSpec};
-use crate::files::units::quantity::{PhysicalQuantity, Quantity, Time};
+use crate::files::signal::{SignalCsvSpec, SignalSpec};
+use crate::files::study::ChangesSpec;
+use crate::files::units::quantity::{PhysicalQuantity, Quantity, Ratio, SoughtConstant, Time};
 use crate::model::{Constant, Follower, Parameter};
 use std::collections::BTreeMap;
 
@@ -47,30 +46,26 @@ pub(crate) fn identification(
     for (index, one) in spec.candidates.iter().enumerate() {
         unique(&one.name, &mut names, &of_candidates.index(index))?;
     }
-    if spec.recordings.iter().all(|one| one.held_out) {
-        let found = match spec.recordings.is_empty() {
-            true => "no recordings",
-            false => "recordings that are all held out",
-        };
-        return Err(of_recordings.wrong(found, "one or more to which constants are fitted"));
-    }
+    let found = match spec.recordings.is_empty() {
+        true => "no recordings",
+        false => "recordings that are all held out",
+    };
+    refuse!(if spec.recordings.iter().all(|one| one.held_out), of_recordings;
+        found found, expected "one or more to which constants are fitted");
     let recordings = spec.recordings.iter().enumerate();
     let recordings = recordings.filter(|(_, one)| one.set == *scene.changes);
     let recordings = recordings.map(|(index, one)| recording(one, &of_recordings.index(index)));
     let candidates = spec.candidates.iter().enumerate();
     let candidates = candidates.filter(|(_, one)| one.set == *scene.changes);
     let candidates = candidates.map(|(index, one)| candidate(one, &of_candidates.index(index)));
-    let step = spec.step.as_ref();
-    let step = step.map(|step| at.key("step").positive(step));
-    let of_scene = (&parameters[..], &spec.free);
-    let mut priors = priors(&spec.priors, of_scene, scene, &at.key("priors"))?;
+    let mut priors = priors(spec, &parameters, scene, &at.key("priors"))?;
     priors.extend(of_their_priors);
     Ok(Identification {
         priors,
         parameters,
         recordings: recordings.collect::<Result<_, _>>()?,
         candidates: candidates.collect::<Result<_, _>>()?,
-        step: step.transpose()?,
+        step: at.optional("step", &spec.step, |at, step| at.positive(step))?,
         coordinates: at.coordinates(spec.coordinates)?,
     })
 }
@@ -140,7 +135,7 @@ fn recording(spec: &RecordingSpec, at: &At<'_>) -> Result<Recording> {
     let mut out = experiment(&spec.name, &on_its_clock(spec), &place)?;
     out.is_held_out = spec.held_out;
     let (from, columns) = columns(spec, at)?;
-    let times = times((from, &columns), spec, at)?;
+    let times = times(from, &columns, spec, at)?;
     let all = measured(&spec.measured, at)?;
     for (index, (one, spec_of)) in all.iter().zip(&spec.measured).enumerate() {
         let at = at.key("measured").index(index);
@@ -169,20 +164,15 @@ fn columns(spec: &RecordingSpec, at: &Scope<'_>) -> Result<(&'static str, Column
 }
 
 /// Times in ms of all rows from the begin of the motion on.
-fn times(
-    (from, columns): (&str, &Columns),
-    spec: &RecordingSpec,
-    at: &Scope<'_>,
-) -> Result<Vec<f64>> {
+fn times(from: &str, columns: &Columns, spec: &RecordingSpec, at: &Scope<'_>) -> Result<Vec<f64>> {
     let place = at.key("time");
-    let written = columns.column::<Time>((&spec.time, &Time::kind()), &place)?;
+    let written = columns.column::<Time>(&spec.time, &Time::kind(), &place)?;
     let times: Vec<f64> = written.iter().map(Quantity::value).collect();
     refuse!(if times.is_empty(), at.key(from);
         found "no readings", expected "one line or more below the headers");
-    if let Some(k) = times.windows(2).position(|pair| pair[0] >= pair[1]) {
-        let found = format!("{} after {}", written[k + 1], written[k]);
-        return Err(place.wrong(found, "increasing times"));
-    }
+    let falls = times.windows(2).position(|pair| pair[0] >= pair[1]);
+    refuse!(if let Some(k) = falls, place;
+        found format!("{} after {}", written[k + 1], written[k]), expected "increasing times");
     let first = &written[0];
     let offset = spec.time_offset.as_ref();
     refuse!(if offset.is_none() && !spec.experiment.at_rest && begin_late(&times), place;
@@ -222,15 +212,14 @@ fn candidate(spec: &CandidateSpec, at: &At<'_>) -> Result<Recording> {
 
 /// The priors of free parameters, by their paths.
 pub(super) fn priors(
-    map: &BTreeMap<String, PriorSpec>,
-    (parameters, free): (&[Parameter], &FreeMap),
+    of: &IdentifySpec,
+    parameters: &[Parameter],
     scene: &WrittenScene<'_>,
     at: &Scope<'_>,
 ) -> Result<Vec<Prior>> {
-    let one = |(path, spec): (&String, &PriorSpec)| {
-        let place = at.key(path);
+    at.each_named(&of.priors, |path, spec, place| {
         let found = parameters.iter().position(|one| one.name == *path);
-        let (Some(constant), Some(bounds)) = (found, free.get(path)) else {
+        let (Some(constant), Some(bounds)) = (found, of.free.get(path)) else {
             return Err(place.wrong(format!("{path:?}"), "a constant of \"free\""));
         };
         let [of_value, of_size] = ["value", "standard_deviation"].map(|key| place.key(key));
@@ -249,8 +238,7 @@ pub(super) fn priors(
             value: spec.value.si() / factor,
             deviation: size.si() / factor,
         })
-    };
-    map.iter().map(one).collect()
+    })
 }
 
 /// Name of the delay of all inputs among the constants.
@@ -276,7 +264,7 @@ pub(super) fn input_constants(
         let source = place.source(name, SOURCE)?;
         let constant = vec![Constant::Gain(source).into()];
         priors.extend(prior(range, first + out.len(), &place)?);
-        out.push(parameter((gain(name), constant), range, 1.0, &place)?);
+        out.push(parameter(gain(name), constant, range, 1.0, &place)?);
     }
     let mut delays: Vec<(String, &RangeSpec<Time>, Vec<usize>, At<'_>)> = Vec::new();
     for (name, range) in &spec.delays {
@@ -293,11 +281,9 @@ pub(super) fn input_constants(
         let least = range.min.value();
         refuse!(if least < 0.0, place.key("min"); found range.min, expected "no negative time");
         priors.extend(prior(range, first + out.len(), &place)?);
-        let constants = sources
-            .into_iter()
-            .map(|source| Constant::Delay(source).into());
-        let of = (name, constants.collect());
-        out.push(parameter(of, range, least, &place)?);
+        let constants = sources.into_iter().map(Constant::Delay);
+        let constants = constants.map(Follower::from).collect();
+        out.push(parameter(name, constants, range, least, &place)?);
     }
     Ok((out, priors))
 }
@@ -308,20 +294,20 @@ fn prior<M: PhysicalQuantity>(
     constant: usize,
     at: &Scope<'_>,
 ) -> Result<Option<Prior>> {
-    let Some(spec) = &range.prior else {
-        return Ok(None);
-    };
-    let deviation = at.key("prior").key("standard_deviation");
-    Ok(Some(Prior {
-        constant,
-        value: spec.value.value(),
-        deviation: deviation.positive(&spec.standard_deviation)?,
-    }))
+    at.optional("prior", &range.prior, |at, spec| {
+        let deviation = at.key("standard_deviation");
+        Ok(Prior {
+            constant,
+            value: spec.value.value(),
+            deviation: deviation.positive(&spec.standard_deviation)?,
+        })
+    })
 }
 
 /// A constant between bounds, from its guess on or from a `usual` value.
 fn parameter<M: PhysicalQuantity>(
-    (name, constants): (String, Vec<Follower>),
+    name: String,
+    constants: Vec<Follower>,
     range: &RangeSpec<M>,
     usual: f64,
     at: &Scope<'_>,
@@ -345,4 +331,142 @@ fn parameter<M: PhysicalQuantity>(
         upper,
         guess,
     })
+}
+
+read_objects! {
+    /// Constants that are fitted to recordings, with what the data say of them.
+    pub struct IdentifySpec {
+        /// Free parameters by their paths in the scene, such as `"materials.silicone.shear_modulus"`, each between bounds.
+        pub free?: FreeMap,
+        /// Constants of the inputs that are sought: gains of sources, and their delays.
+        pub inputs?: InputConstantsSpec,
+        /// Constants of `free` that are known beside the recordings, by their paths: each counts as one reading more.
+        pub priors: BTreeMap<String, PriorSpec>,
+        /// Recordings: those that constants are fitted to, and those that are held out to check their prediction.
+        pub recordings: Vec<RecordingSpec>,
+        /// Experiments that could be done next; the result ranks them by the variance that they leave.
+        pub candidates?: Vec<CandidateSpec>,
+        /// Step of the first grid, SI unit s, which is halved until its bias is below a tenth of the standard errors; by the number of readings
+        /// where not written.
+        pub step: Option<Quantity<Time>>,
+        /// Coordinates.
+        pub coordinates: Option<CoordinatesSpec>,
+    }
+
+    /// Constants of the inputs of all recordings.
+    #[derive(Default)]
+    pub struct InputConstantsSpec {
+        /// Factors between the voltages and loads that recordings say and those that act, by the names of muscles, electrodes and loads.
+        pub gains: BTreeMap<String, RangeSpec<Ratio>>,
+        /// Time by which all voltages and loads act later than recordings say, SI unit s; before they act, those of the state of rest at the
+        /// start, or the first ones.
+        pub delay: Option<RangeSpec<Time>>,
+        /// The same of single sources, by the names of muscles, electrodes and loads, beside that of all others.
+        pub delays: BTreeMap<String, RangeSpec<Time>>,
+    }
+
+    /// Bounds of a constant.
+    #[serde(bound = "")]
+    #[schemars(bound = "M: PhysicalQuantity")]
+    pub struct RangeSpec<M: PhysicalQuantity> {
+        /// Lower bound.
+        pub min: Quantity<M>,
+        /// Upper bound.
+        pub max: Quantity<M>,
+        /// Value at which the fit starts; 1 of a gain, the lower bound of a delay where not written.
+        pub guess: Option<Quantity<M>>,
+        /// A normal distribution, as of a data sheet, which counts as one reading more.
+        pub prior: Option<InputPriorSpec<M>>,
+    }
+
+    /// A normal distribution of a constant of the inputs.
+    #[serde(bound = "")]
+    #[schemars(bound = "M: PhysicalQuantity")]
+    pub struct InputPriorSpec<M: PhysicalQuantity> {
+        /// Mean.
+        pub value: Quantity<M>,
+        /// Standard deviation.
+        pub standard_deviation: Quantity<M>,
+    }
+
+    /// A normal distribution of a constant, such as that of a data sheet.
+    pub struct PriorSpec {
+        /// Mean, in the unit of the constant.
+        pub value: Quantity<SoughtConstant>,
+        /// Standard deviation.
+        pub standard_deviation: Quantity<SoughtConstant>,
+    }
+
+    /// Readings of a motion or of states of rest under given voltages and loads.
+    pub struct RecordingSpec {
+        /// Unique name.
+        pub name: String,
+        /// Path of the CSV file, relative to the problem or to the current folder: one line of headers such as `tip [mm]`, `tip (mm)` or `tip_mm`,
+        /// SI units where a header has none, which a note says; lines that begin with `#` are comments, empty cells are gaps.
+        pub file: Option<String>,
+        /// Columns of numbers by such headers in place of a file; `null` is a gap.
+        pub columns: Option<BTreeMap<String, Vec<Option<f64>>>>,
+        /// Header of the times, which begin with the motion at 0; `time` where not written.
+        #[serde(default = "time")]
+        pub time: String,
+        /// Time in that column at which the motion begins, SI unit s, which all times lose, also those of inputs from the same file that have no
+        /// `time_offset` of their own; 0 where not written. A motion whose readings begin late needs it.
+        pub time_offset: Option<Quantity<Time>>,
+        /// Quantities that the columns measure.
+        pub measured: Vec<MeasuredSpec>,
+        /// Voltages, loads and start.
+        pub experiment?: ExperimentSpec,
+        /// Values that are other ones in the scene of this recording, by their places, such as `"scene.bodies.payload.mass": "1 kg"`.
+        pub set?: ChangesSpec,
+        /// True if no constant is fitted to it: the result says whether the fitted constants explain it.
+        pub held_out: bool,
+    }
+
+    /// An experiment that could be done.
+    pub struct CandidateSpec {
+        /// Unique name.
+        pub name: String,
+        /// Length, SI unit s.
+        pub duration: Quantity<Time>,
+        /// Number of readings of each quantity, at equal distances.
+        pub readings: usize,
+        /// Measured quantities; their columns are not read.
+        pub measured: Vec<MeasuredSpec>,
+        /// Voltages, loads and start.
+        pub experiment?: ExperimentSpec,
+        /// Values that are other ones in the scene of this experiment, by their places.
+        pub set?: ChangesSpec,
+    }
+
+    /// Voltages, loads and start of a recording.
+    #[derive(Default)]
+    pub struct ExperimentSpec {
+        /// Constant voltages, those of a solution, a table, or functions of time such as columns of a CSV file; 0 where not written.
+        pub voltages?: VoltagesSpec,
+        /// Loads by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
+        pub loads?: LoadMap,
+        /// Start of the motion; the reference configuration at rest where not written.
+        pub start: Option<StartSpec>,
+        /// Part of the start that is unknown, and fitted with the constants; nothing where not written.
+        pub sought_start?: SoughtStartSpec,
+        /// True if each reading is one of a state of rest under the voltages and loads of its time.
+        pub at_rest: bool,
+    }
+
+    /// Unknown part of a start.
+    #[derive(Default)]
+    pub enum SoughtStartSpec: SoughtStart {
+        /// All is given.
+        #[default]
+        Nothing,
+        /// The coordinates.
+        Coordinates,
+        /// The coordinates and the momenta.
+        State,
+    }
+}
+
+/// The usual header of times.
+fn time() -> String {
+    "time".to_owned()
 }

@@ -3,12 +3,10 @@
 use crate::control::problem::{BoundaryState, Duration, Voltages};
 use crate::files::json::scope::{Result, refuse};
 use crate::files::problem::at::At;
-use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::{StartSpec, start_state};
-use crate::files::problem::voltages::over_time;
+use crate::files::problem::voltages::{VoltagesSpec, over_time};
 use crate::files::scene::names::names;
-use crate::files::signal::signal;
-use crate::files::signal::spec::SignalSpec;
+use crate::files::signal::{SignalSpec, signal};
 use crate::files::units::quantity::{
     Charge, ChargeDensity, Force, ForceDensity, Kind, LoadSize, Quantity, Stress, Torque, Voltage,
 };
@@ -110,11 +108,7 @@ pub(crate) fn driven(
 ) -> Result<(BoundaryState, Voltages)> {
     let mut start = match start {
         Some(start) => start_state(start, &at.key("start"))?,
-        None => BoundaryState::JointAngles {
-            angles: BTreeMap::new(),
-            rates: BTreeMap::new(),
-            velocities: Default::default(),
-        },
+        None => BoundaryState::at_joints(BTreeMap::new()),
     };
     let voltages = over_time(voltages, &at.key("voltages"))?;
     let loads = self::loads(loads, &at.key("loads"))?;

@@ -11,7 +11,7 @@ use crate::files::json::document::Document;
 use crate::files::json::path::JsonPath;
 use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::json::tree::Json;
-use crate::files::problem::spec_control::{COMMON, ControlSpec};
+use crate::files::problem::spec_control::COMMON;
 
 /// Keys of a motion that are none of a control problem.
 const OWN: [&str; 2] = ["name", "set"];
@@ -34,12 +34,10 @@ pub(crate) fn motions(document: &Document) -> Result<Option<Vec<MotionDocument<'
     let Some(list) = control.entry("motions") else {
         return Ok(None);
     };
-    if control.entry("sensitivity").is_some() {
-        let scope = Scope::of(document).key("control").key("sensitivity");
-        let found = "sensitivities of several motions";
-        return Err(scope.wrong(found, "a problem of one motion"));
-    }
-    let scope = Scope::of(document).key("control").key("motions");
+    let scope = Scope::of(document).key("control");
+    refuse!(if control.entry("sensitivity").is_some(), scope.key("sensitivity");
+        found "sensitivities of several motions", expected "a problem of one motion");
+    let scope = scope.key("motions");
     refuse!(if list.first() != Some('['), scope; found list, expected "a list of motions");
     refuse!(if list.parts().len() == 0, scope;
         found "no motion", expected "a list of one motion or more");
@@ -61,22 +59,14 @@ fn one<'a>(
     control: Json<'_>,
     scope: &Scope<'a>,
 ) -> Result<MotionDocument<'a>> {
-    if motion.first() != Some('{') {
-        return Err(scope.wrong(
-            motion.to_string(),
-            "a motion: an object with the keys that are other ones in it",
-        ));
-    }
+    refuse!(if motion.first() != Some('{'), scope;
+        found motion, expected "a motion: an object with the keys that are other ones in it");
     let is_of =
         |list: &[&str], entry: &Json<'_>| entry.key().is_some_and(|key| list.contains(&&*key));
-    if let Some(common) = motion.parts().find(|entry| is_of(&COMMON, entry)) {
-        let key = common.key().unwrap_or_default();
-        let found = format!("the key {key:?} in a motion");
-        return Err(scope.key(&key).wrong(
-            found,
-            "it beside \"motions\": all of them have it in common",
-        ));
-    }
+    let mut common = motion.parts().filter(|entry| is_of(&COMMON, entry));
+    refuse!(if let Some(key) = common.find_map(Json::key), scope.key(&key);
+        found format!("the key {key:?} in a motion"),
+        expected "it beside \"motions\": all of them have it in common");
     let is_shared = |entry: &Json<'_>| {
         let is_own = entry.key().is_some_and(|key| motion.entry(&key).is_some());
         !is_own && !is_of(&OF_ALL, entry)
@@ -108,13 +98,10 @@ fn name(written: Option<Value>, number: usize, scope: &Scope<'_>) -> Result<Stri
         Some(other) => return Err(scope.wrong(other.to_string(), "a name")),
     };
     let fits = |c: char| c.is_alphanumeric() || "_-".contains(c);
-    match !name.is_empty() && name.chars().all(fits) {
-        true => Ok(name),
-        false => Err(scope.wrong(
-            format!("{name:?}"),
-            "a name of letters, digits, _ and -, which is that of its folder",
-        )),
-    }
+    refuse!(if name.is_empty() || !name.chars().all(fits), scope;
+        found format!("{name:?}"),
+        expected "a name of letters, digits, _ and -, which is that of its folder");
+    Ok(name)
 }
 
 /// The constants of the scene that are other ones in a motion.
@@ -138,26 +125,6 @@ fn changes<'a>(written: Option<Value>, scope: &Scope<'a>) -> Result<Changes<'a>>
         changes.push(key, value, place)?;
     }
     Ok(changes)
-}
-
-/// Refuses keys of several motions in a problem of one.
-pub(super) fn check_alone(spec: &ControlSpec, scope: &Scope<'_>) -> Result<()> {
-    let keys = [
-        (
-            !spec.shared_inputs.is_empty(),
-            "shared_inputs",
-            "inputs in common",
-        ),
-        (
-            spec.combine.is_some(),
-            "combine",
-            "an objective of several motions",
-        ),
-    ];
-    match keys.into_iter().find(|(is_written, ..)| *is_written) {
-        None => Ok(()),
-        Some((_, key, found)) => Err(scope.key(key).wrong(found, "none without \"motions\"")),
-    }
 }
 
 /// The objective of all motions, the sum where none is written.
@@ -193,13 +160,10 @@ pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions
         check_input(&motions.list, name, &scope.index(index))?;
     }
     let other = motions.task().other_grid().map(|motion| motion.name);
-    match other.filter(|_| !motions.shared_inputs.is_empty()) {
-        None => Ok(motions),
-        Some(name) => Err(scope.wrong(
-            format!("inputs in common with the motion {name:?}, whose instants are other ones"),
-            "motions of one given \"duration\" and one number of \"intervals\"",
-        )),
-    }
+    refuse!(if let Some(name) = other.filter(|_| !motions.shared_inputs.is_empty()), scope;
+        found format!("inputs in common with the motion {name:?}, whose instants are other ones"),
+        expected "motions of one given \"duration\" and one number of \"intervals\"");
+    Ok(motions)
 }
 
 /// That an input is sought in all motions.

@@ -35,8 +35,7 @@ const KINDS: [&str; 14] = [
 ];
 
 pub(crate) fn output(spec: &OutputSpec, at: &At<'_>) -> Result<Output> {
-    let every = spec.every.as_ref();
-    let every = every.map(|every| at.key("every").positive(every));
+    let every = at.optional("every", &spec.every, |at, every| at.positive(every))?;
     let place = at.key("quantities");
     refuse!(if spec.quantities.as_ref().is_some_and(Vec::is_empty), place;
         found "none", expected "one or more names of quantities");
@@ -55,7 +54,7 @@ pub(crate) fn output(spec: &OutputSpec, at: &At<'_>) -> Result<Output> {
         place.index(index).find(name, &known, &expected)?;
     }
     Ok(Output {
-        every: every.transpose()?,
+        every,
         quantities: spec.quantities.clone(),
     })
 }

@@ -3,10 +3,10 @@
 use crate::control::problem::{Ahead, Duration, Regulator, Simulation, Task};
 use crate::feedback::{Law, LawInput};
 use crate::files::json::document::Document;
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
+use crate::files::problem::build::ProblemSpec;
 use crate::files::problem::feedback::{CONTROL_FILE, ROUNDING};
 use crate::files::problem::simulation::refuse_given;
-use crate::files::problem::spec::ProblemSpec;
 use crate::math::shortest;
 use crate::model::system::{Source, System};
 use std::path::Path;
@@ -59,12 +59,10 @@ pub(crate) fn add_plan(
     };
     let sample = duration / control.intervals as f64;
     let steps = (sample / step).round();
-    if control.is_refined || steps < 1.0 || (sample / step - steps).abs() > ROUNDING * steps {
-        let [sample, step] = [sample, step].map(|time| shortest(time, 9));
-        let found = format!("{of:?} with intervals of {sample} ms");
-        let expected = format!("given intervals that are multiples of the step {step} ms");
-        return Err(place.wrong(found, expected));
-    }
+    let is_multiple = steps >= 1.0 && (sample / step - steps).abs() <= ROUNDING * steps;
+    refuse!(if control.is_refined || !is_multiple, place;
+        found format!("{of:?} with intervals of {} ms", shortest(sample, 9)),
+        expected format!("given intervals that are multiples of the step {} ms", shortest(step, 9)));
     let given = system.sources().into_iter().enumerate();
     let inputs = given.filter(|(source, named)| named.acts() && !control.is_given(*source));
     let input = |(_, named): (usize, Source)| LawInput {

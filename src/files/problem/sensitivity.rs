@@ -1,6 +1,7 @@
 //! Conversion of the numbers by which the optimum of a problem is differentiated.
 
 use crate::control::problem::{BoundaryState, Control, Duration, Varied, VariedOf, WeightOf};
+use crate::files::json::either::Scalar;
 use crate::files::json::objects::read_objects;
 use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::{Result, Scope, refuse};
@@ -11,12 +12,10 @@ use crate::files::units::quantity::{Kind, Length, Quantity, SoughtConstant, Time
 use crate::model::system::{InputKind, Source};
 use crate::model::{NotSought, Parameter, SiUnit, check_parameters};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::fmt;
 
 /// Part of a number of a scene up to which it is put in its place to find what follows it.
 const BESIDE: f64 = 0.1;
@@ -65,7 +64,7 @@ fn varied(
             matches!(place.0.first(), Some(Step::Key(key)) if OF_PROBLEM.contains(&&**key));
         out.push(match is_of_problem {
             true => of_problem(path, &place, spec, control, &at)?,
-            false => of_scene((path, &place), spec, scene, &at)?,
+            false => of_scene(path, &place, spec, scene, &at)?,
         });
     }
     let held = out.iter().filter_map(Varied::parameter);
@@ -79,7 +78,8 @@ fn varied(
 
 /// A number of the scene.
 fn of_scene(
-    (path, place): (&str, &JsonPath),
+    path: &str,
+    place: &JsonPath,
     spec: &SensitivitySpec,
     scene: &WrittenScene<'_>,
     at: &Scope<'_>,
@@ -280,6 +280,7 @@ impl Place<'_> {
         })
     }
 
+    /// A number of the goal.
     fn of_goal(&self, key: &str) -> Result<Option<Number>> {
         Ok(match (key, &self.control.goal) {
             ("joint_angles", BoundaryState::JointAngles { angles, .. }) => {
@@ -289,9 +290,7 @@ impl Place<'_> {
                 value.map(|value| (VariedOf::GoalJoint(joint), *value, unit))
             }
             ("rest_at_voltages", BoundaryState::RestAtVoltages(voltages, _)) => {
-                let source = self.at.source(&self.name(), A_SOURCE)?;
-                let unit = Unit::of_source(&self.at.sources[source]);
-                Some((VariedOf::GoalVoltage(source), voltages[source], unit))
+                Some(self.voltage(voltages, VariedOf::GoalVoltage)?)
             }
             ("markers", BoundaryState::Markers { places, .. }) => {
                 let marker = self.at.marker(&self.name())?;
@@ -307,27 +306,36 @@ impl Place<'_> {
         })
     }
 
+    /// A number of the start; zero where it does not name the joint.
     fn of_start(&self, key: &str) -> Result<Option<Number>> {
-        Ok(match (key, &self.control.start) {
+        let of_joint = |values: &BTreeMap<usize, f64>, of: fn(usize) -> VariedOf| {
+            let joint = self.at.joint(&self.name())?;
+            let unit = match key {
+                "joint_rates" => self.at.unit_of_rate(joint),
+                _ => self.at.unit_of(joint),
+            };
+            let value = values.get(&joint).copied().unwrap_or(0.0);
+            Ok(Some((of(joint), value, Unit::new(unit))))
+        };
+        match (key, &self.control.start) {
             ("joint_angles", BoundaryState::JointAngles { angles, .. }) => {
-                let joint = self.at.joint(&self.name())?;
-                let value = angles.get(&joint).copied().unwrap_or(0.0);
-                let unit = Unit::new(self.at.unit_of(joint));
-                Some((VariedOf::StartJoint(joint), value, unit))
+                of_joint(angles, VariedOf::StartJoint)
             }
             ("joint_rates", BoundaryState::JointAngles { rates, .. }) => {
-                let joint = self.at.joint(&self.name())?;
-                let value = rates.get(&joint).copied().unwrap_or(0.0);
-                let unit = Unit::new(self.at.unit_of_rate(joint));
-                Some((VariedOf::StartRate(joint), value, unit))
+                of_joint(rates, VariedOf::StartRate)
             }
             ("rest_at_voltages", BoundaryState::RestAtVoltages(voltages, _)) => {
-                let source = self.at.source(&self.name(), A_SOURCE)?;
-                let unit = Unit::of_source(&self.at.sources[source]);
-                Some((VariedOf::StartVoltage(source), voltages[source], unit))
+                self.voltage(voltages, VariedOf::StartVoltage).map(Some)
             }
-            _ => None,
-        })
+            _ => Ok(None),
+        }
+    }
+
+    /// A voltage or load at rest.
+    fn voltage(&self, voltages: &[f64], of: fn(usize) -> VariedOf) -> Result<Number> {
+        let source = self.at.source(&self.name(), A_SOURCE)?;
+        let unit = Unit::of_source(&self.at.sources[source]);
+        Ok((of(source), voltages[source], unit))
     }
 }
 
@@ -363,54 +371,29 @@ pub enum ToleranceSpec {
     Size(Quantity<SoughtConstant>),
 }
 
-/// Reads tolerances.
-struct ToleranceVisitor;
-
 /// Tolerances, for messages.
 pub(crate) const A_TOLERANCE: &str = "a positive part such as \"5 %\", or a positive size in the unit of the number such as \"1 mm\"";
 
-impl Visitor<'_> for ToleranceVisitor {
-    type Value = ToleranceSpec;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(A_TOLERANCE)
-    }
-
-    fn visit_f64<E: Error>(self, number: f64) -> Result<Self::Value, E> {
-        let size = Quantity::try_from_number(number);
-        let size = size.map_err(|found| E::invalid_value(Unexpected::Other(&found), &self))?;
-        Ok(ToleranceSpec::Size(size))
-    }
-
-    fn visit_i64<E: Error>(self, number: i64) -> Result<Self::Value, E> {
-        self.visit_f64(number as f64)
-    }
-
-    fn visit_u64<E: Error>(self, number: u64) -> Result<Self::Value, E> {
-        self.visit_f64(number as f64)
-    }
-
-    fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
-        if let Some(number) = text.trim_end().strip_suffix('%') {
-            let part = number
-                .trim()
-                .parse::<f64>()
-                .ok()
-                .filter(|part| part.is_finite());
-            let wrong = || E::invalid_value(Unexpected::Str(text), &self);
-            return part
-                .map(|part| ToleranceSpec::Part(part / 100.0))
-                .ok_or_else(wrong);
-        }
-        let size = Quantity::try_from_text(text);
-        let size = size.map_err(|found| E::invalid_value(Unexpected::Other(&found), &self))?;
-        Ok(ToleranceSpec::Size(size))
+impl ToleranceSpec {
+    /// Reads a part such as `5 %`, or a size.
+    fn of_text(text: &str) -> Result<Self, String> {
+        let Some(number) = text.trim_end().strip_suffix('%') else {
+            return Quantity::try_from_text(text).map(Self::Size);
+        };
+        let part = number.trim().parse::<f64>().ok();
+        let part = part.filter(|part| part.is_finite());
+        let part = part.map(|part| Self::Part(part / 100.0));
+        part.ok_or_else(|| format!("{text:?}"))
     }
 }
 
 impl<'de> Deserialize<'de> for ToleranceSpec {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(ToleranceVisitor)
+        deserializer.deserialize_any(Scalar {
+            expected: || A_TOLERANCE.to_owned(),
+            number: |number| Quantity::try_from_number(number).map(Self::Size),
+            text: Self::of_text,
+        })
     }
 }
 

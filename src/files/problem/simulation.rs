@@ -9,8 +9,8 @@ use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::{At, CoordinatesSpec};
 use crate::files::problem::feedback::{ControllerSpec, controller};
 use crate::files::problem::loads::{LoadMap, driven};
-use crate::files::problem::spec_voltages::VoltagesSpec;
 use crate::files::problem::state::StartSpec;
+use crate::files::problem::voltages::VoltagesSpec;
 use crate::files::units::quantity::{Quantity, Time};
 use crate::math::shortest;
 use crate::sparse::Backend;
@@ -45,21 +45,17 @@ pub(crate) fn simulation(spec: &SimulateSpec, at: &At<'_>) -> Result<Simulation>
             backend,
             multigrid,
         },
-        controller: match &spec.controller {
-            Some(written) => {
-                // The steps that are taken, which divide the duration.
-                let equal = duration / (duration / step - 1e-9).ceil().max(1.0);
-                let equal = tolerance.is_none().then_some(equal);
-                let place = at.key("controller");
-                let controller = controller(written, equal, &place)?;
-                refuse!(if controller.delay > duration, place.key("delay");
-                    found format!("{} s", shortest(controller.delay / 1e3, 9)),
-                    expected format!("no more than the duration {}", spec.duration));
-                refuse_given(spec, &controller.law, at)?;
-                Some(Box::new(controller))
-            }
-            None => None,
-        },
+        controller: at.optional("controller", &spec.controller, |place, written| {
+            // The steps that are taken, which divide the duration.
+            let equal = duration / (duration / step - 1e-9).ceil().max(1.0);
+            let equal = tolerance.is_none().then_some(equal);
+            let controller = controller(written, equal, place)?;
+            refuse!(if controller.delay > duration, place.key("delay");
+                found format!("{} s", shortest(controller.delay / 1e3, 9)),
+                expected format!("no more than the duration {}", spec.duration));
+            refuse_given(spec, &controller.law, at)?;
+            Ok(Box::new(controller))
+        })?,
     })
 }
 
@@ -75,14 +71,11 @@ pub(crate) fn refuse_given(spec: &SimulateSpec, law: &Law, at: &Scope<'_>) -> Re
         .into_iter()
         .map(|name| ("voltages", name))
         .chain(loads);
-    match written.find(|(_, name)| law.inputs.iter().any(|input| input.name == **name)) {
-        None => Ok(()),
-        Some((key, name)) => {
-            let found = format!("{name:?}, an input that the controller gives");
-            let expected = "other inputs alone beside \"controller\"";
-            Err(at.key(key).key(name).wrong(found, expected))
-        }
-    }
+    let given = written.find(|(_, name)| law.inputs.iter().any(|input| input.name == **name));
+    refuse!(if let Some((key, name)) = given, at.key(key).key(name);
+        found format!("{name:?}, an input that the controller gives"),
+        expected "other inputs alone beside \"controller\"");
+    Ok(())
 }
 
 /// Length of the steps in ms, of the first attempt where a tolerance controls it, and the tolerance.
@@ -103,11 +96,9 @@ pub(crate) fn step(
     };
     let place = at.key("step");
     let step = place.positive(written)?;
-    if let Some(tolerance) = spec.tolerance {
-        let found = format!("{tolerance} beside steps of {written}");
-        let expected = "a tolerance only where the step is \"auto\" or not written";
-        return Err(at.key("tolerance").wrong(found, expected));
-    }
+    refuse!(if let Some(tolerance) = spec.tolerance, at.key("tolerance");
+        found format!("{tolerance} beside steps of {written}"),
+        expected "a tolerance only where the step is \"auto\" or not written");
     refuse!(if step > duration, place;
         found written,
         expected format!("a step that is no longer than the duration {}", spec.duration));
@@ -257,21 +248,12 @@ pub(crate) fn integrator(spec: Option<&IntegratorSpec>, at: &At<'_>) -> Result<I
         },
         Some(IntegratorSpec::Object(object)) => with_parameter(object, at)?,
     };
-    let changes = at
-        .system
-        .muscles
-        .iter()
-        .find(|muscle| muscle.section_inertia);
-    match (method, changes) {
-        (Integrator::GeneralisedAlpha { .. }, Some(muscle)) => {
-            let found = format!(
-                "\"generalised_alpha\", though \"section_inertia\" of {} is not constant",
-                muscle.name
-            );
-            Err(at.wrong(found, "another method"))
-        }
-        _ => Ok(method),
-    }
+    let mut muscles = at.system.muscles.iter();
+    let changes = muscles.find(|muscle| muscle.section_inertia);
+    refuse!(if let (Integrator::GeneralisedAlpha { .. }, Some(muscle)) = (method, changes), at;
+        found format!("\"generalised_alpha\", though \"section_inertia\" of {} is not constant", muscle.name),
+        expected "another method");
+    Ok(method)
 }
 
 fn with_parameter(object: &IntegratorObject, at: &Scope<'_>) -> Result<Integrator> {

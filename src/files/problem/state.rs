@@ -1,15 +1,18 @@
-//! Conversion of states of a problem file to indices and one voltage per source.
+//! States of a problem file at the start, at the end and on the way, and their conversion to indices, places, orientations and one voltage
+//! per source.
 
-use crate::control::problem::{BoundaryState, Hold, Rest, SoughtHold};
-use crate::files::json::objects::read_objects;
-use crate::files::json::scope::{Result, refuse};
-use crate::files::problem::at::At;
-use crate::files::problem::end_of::end_of;
-use crate::files::problem::spec_voltages::VoltageMap;
-use crate::files::scene::point::{PartialPoint, vector};
-use crate::files::units::quantity::{
-    Angle, AngularVelocity, JointCoordinate, JointRate, Quantity, Velocity,
+use crate::control::problem::{
+    BoundaryState, Duration, Hold, Orientation, Place, QuantityCost, Rest, SoughtHold, Waypoint,
 };
+use crate::files::json::objects::read_objects;
+use crate::files::json::scope::{Result, Scope, refuse, the_one};
+use crate::files::problem::at::{At, VoltageMap};
+use crate::files::problem::end_of::end_of;
+use crate::files::scene::point::{PartialPoint, unit_axis, vector};
+use crate::files::units::quantity::{
+    Angle, AngularVelocity, JointCoordinate, JointRate, Length, Quantity, Time, Velocity,
+};
+use crate::math::shortest;
 use crate::model::Graph;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -208,5 +211,239 @@ read_objects! {
         Reported,
         /// It is no solution.
         Required,
+    }
+}
+
+/// A state at the end.
+pub(crate) fn goal_state(spec: &GoalSpec, at: &At<'_>) -> Result<BoundaryState> {
+    let spec = match spec {
+        GoalSpec::Word(GoalWord::Free) => return Ok(BoundaryState::Free),
+        GoalSpec::Word(GoalWord::Periodic) => return Ok(BoundaryState::Periodic),
+        GoalSpec::Rest(spec) => spec.as_ref(),
+    };
+    let key = given_key(spec, at)?;
+    check_companions(spec, key, at)?;
+    match (&spec.rest_at_voltages, &spec.joint_angles) {
+        (Some(map), _) => equilibrium(map, reached(spec), at),
+        (None, Some(_)) => coordinates(spec, &at.key(key)),
+        (None, None) => positions(spec, at),
+    }
+}
+
+fn is_of_places(spec: &RestGoalSpec) -> bool {
+    spec.markers.is_some() || spec.orientations.is_some()
+}
+
+/// The key that says what a goal gives.
+fn given_key(spec: &RestGoalSpec, at: &Scope<'_>) -> Result<&'static str> {
+    let of_places = match (&spec.markers, &spec.orientations) {
+        (None, Some(_)) => "orientations",
+        _ => "markers",
+    };
+    at.one_key([
+        ("rest_at_voltages", spec.rest_at_voltages.is_some()),
+        ("joint_angles", spec.joint_angles.is_some()),
+        (of_places, is_of_places(spec)),
+    ])
+}
+
+/// Refuses `hold` and `rest` where they have no meaning next to `key`.
+fn check_companions(spec: &RestGoalSpec, key: &str, at: &Scope<'_>) -> Result<()> {
+    let beside_places = "it beside \"markers\" or \"orientations\" only";
+    let beside_rest = "it beside \"rest_at_voltages\", \"markers\" or \"orientations\" only";
+    let beside_goals = "it beside \"joint_angles\", \"markers\" or \"orientations\"; voltages at rest hold their equilibrium";
+    let is_of_angles = spec.joint_angles.is_some();
+    let is_found = matches!(spec.hold, Some(HeldSpec::Word(_)));
+    for (name, is_ignored, expected) in [
+        (
+            "hold",
+            spec.hold.is_some() && !is_of_places(spec) && !(is_found && is_of_angles),
+            if is_found {
+                beside_goals
+            } else {
+                beside_places
+            },
+        ),
+        ("rest", spec.rest.is_some() && is_of_angles, beside_rest),
+    ] {
+        refuse!(if is_ignored, at.key(name);
+            found format!("{name:?} beside {key:?}"), expected expected);
+    }
+    Ok(())
+}
+
+/// Part of the system that comes to rest.
+fn reached(spec: &RestGoalSpec) -> Rest {
+    spec.rest.map_or(Rest::Attainable, Rest::from)
+}
+
+/// A state of rest under voltages.
+fn equilibrium(map: &VoltageMap, rest: Rest, at: &At<'_>) -> Result<BoundaryState> {
+    refuse!(if rest == Rest::Bodies && at.system.bodies.is_empty(), at.key("rest");
+        found "a scene without bodies",
+        expected "a scene with bodies; goals of elastic blocks alone are \"markers\"");
+    let row = at.key("rest_at_voltages").voltages(map)?;
+    Ok(BoundaryState::RestAtVoltages(row, rest))
+}
+
+/// Positions of markers and orientations of bodies.
+fn positions(spec: &RestGoalSpec, at: &At<'_>) -> Result<BoundaryState> {
+    Ok(BoundaryState::Markers {
+        places: of_markers(&spec.markers, &at.key("markers"))?,
+        orientations: of_bodies(&spec.orientations, &at.key("orientations"))?,
+        rest: reached(spec),
+        hold: match &spec.hold {
+            Some(HeldSpec::Given(map)) => Some(at.key("hold").voltages(map)?),
+            Some(HeldSpec::Word(_)) | None => None,
+        },
+    })
+}
+
+/// Coordinates of joints, whose map stands here.
+fn coordinates(spec: &RestGoalSpec, at: &At<'_>) -> Result<BoundaryState> {
+    let angles = at.by_joint(&spec.joint_angles)?;
+    refuse!(if angles.is_empty(), at;
+        found "no joint", expected "the coordinate of a joint or more");
+    Ok(BoundaryState::at_joints(angles))
+}
+
+/// Places by marker; of a map that is written one or more.
+pub(crate) fn of_markers(
+    markers: &Option<BTreeMap<String, PartialPoint>>,
+    at: &At<'_>,
+) -> Result<BTreeMap<usize, Place>> {
+    refuse!(if markers.as_ref().is_some_and(BTreeMap::is_empty), at;
+        found "no marker", expected "the position of a marker or more");
+    at.each_named(markers.iter().flatten(), |name, point, at| {
+        let marker = at.moving_marker(name)?;
+        refuse!(if point.iter().all(Option::is_none), at;
+            found "no coordinate", expected "one that is not null, or more");
+        let value = |entry: &Option<Quantity<Length>>| entry.as_ref().map(Quantity::value);
+        Ok((marker, Place(point.each_ref().map(value))))
+    })
+}
+
+/// Orientations by body; of a map that is written one or more.
+pub(crate) fn of_bodies(
+    bodies: &Option<BTreeMap<String, OrientationSpec>>,
+    at: &At<'_>,
+) -> Result<BTreeMap<usize, Orientation>> {
+    refuse!(if bodies.as_ref().is_some_and(BTreeMap::is_empty), at;
+        found "no body", expected "the orientation of a body or more");
+    at.each_named(bodies.iter().flatten(), |name, spec, at| {
+        let body = at.body(name)?;
+        let axis = unit_axis(&spec.axis, &at.key("axis"))?;
+        let orientation = the_one!(at, spec;
+            "towards" towards |at, towards| Orientation::Towards {
+                axis,
+                towards: unit_axis(towards, at)?,
+            };
+            "angle" angle |_, angle| Orientation::Turned {
+                axis,
+                angle: angle.value(),
+            };
+        );
+        Ok((body, orientation))
+    })
+}
+
+read_objects! {
+    /// Places that the motion reaches at a time on its way, at the instant nearest to it: `markers`, `orientations`, `joint_angles`, or several
+    /// of them. With a `weight` it passes near them: their squared distances are costs.
+    pub struct WaypointSpec {
+        /// Time, SI unit s; or give `part`.
+        pub time: Option<Quantity<Time>>,
+        /// Part of the duration, above 0 and below 1, which may be free; of a periodic motion 1 is its start and its end.
+        pub part: Option<f64>,
+        /// Positions by marker, SI unit m; directions that are `null` are free.
+        pub markers: Option<BTreeMap<String, PartialPoint>>,
+        /// Orientations by body.
+        pub orientations: Option<BTreeMap<String, OrientationSpec>>,
+        /// Joint coordinates by joint, SI unit rad or m.
+        pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
+        /// Weight of the squared distances at that instant, in mm² of markers and prismatic joints and rad² of revolute ones, as costs in the
+        /// objective in place of exact conditions; not of `orientations`.
+        pub weight: Option<f64>,
+    }
+}
+
+/// The motion that waypoints are on the way of.
+#[derive(Clone, Copy)]
+pub(crate) struct Course {
+    pub(crate) duration: Duration,
+    pub(crate) is_periodic: bool,
+}
+
+/// The waypoints that are written: those that are conditions, and the costs that others are.
+pub(crate) fn waypoints(
+    specs: &[WaypointSpec],
+    of: Course,
+    at: &At<'_>,
+) -> Result<(Vec<Waypoint>, Vec<QuantityCost>)> {
+    let (mut exact, mut near) = (Vec::new(), Vec::new());
+    for (index, spec) in specs.iter().enumerate() {
+        let at = at.index(index);
+        let waypoint = spec.waypoint(of, &at)?;
+        let Some(weight) = spec.weight else {
+            exact.push(waypoint);
+            continue;
+        };
+        refuse!(if spec.orientations.is_some(), at.key("orientations");
+            found "an orientation with a weight",
+            expected "an orientation without \"weight\", which is reached exactly");
+        refuse!(if weight <= 0.0, at.key("weight"); found weight, expected "a positive weight");
+        near.extend(waypoint.costs(weight));
+    }
+    Ok((exact, near))
+}
+
+impl WaypointSpec {
+    fn waypoint(&self, of: Course, at: &At<'_>) -> Result<Waypoint> {
+        let (part, name) = self.part_of(of, at)?;
+        let waypoint = Waypoint {
+            part,
+            name,
+            places: of_markers(&self.markers, &at.key("markers"))?,
+            orientations: of_bodies(&self.orientations, &at.key("orientations"))?,
+            angles: at.key("joint_angles").by_joint(&self.joint_angles)?,
+        };
+        let is_empty = waypoint.places.is_empty()
+            && waypoint.orientations.is_empty()
+            && waypoint.angles.is_empty();
+        refuse!(if is_empty, at;
+            found "a waypoint without a place",
+            expected "\"markers\", \"orientations\" or \"joint_angles\"");
+        Ok(waypoint)
+    }
+
+    /// Part of the duration, and the name in messages.
+    fn part_of(&self, of: Course, at: &Scope<'_>) -> Result<(f64, String)> {
+        let key = at.one_key([("time", self.time.is_some()), ("part", self.part.is_some())])?;
+        let (part, name, found, expected) = match (&self.time, of.duration) {
+            (Some(time), Duration::Given(duration)) => (
+                time.value() / duration,
+                format!("waypoint at {time}"),
+                time.to_string(),
+                "a time after the start and before the end; what is reached at the end is the \"goal\"",
+            ),
+            (Some(_), Duration::Free { .. }) => {
+                let expected = "\"part\", a part of the duration, as the duration is free";
+                return Err(at.key(key).wrong("a time", expected));
+            }
+            (None, _) => {
+                let part = self.part.unwrap_or_default();
+                let name = format!("waypoint at {} of the duration", shortest(part, 6));
+                let expected = match of.is_periodic {
+                    true => "a number above 0 and at most 1",
+                    false => "a number above 0 and below 1",
+                };
+                (part, name, part.to_string(), expected)
+            }
+        };
+        // The end of a periodic motion is its start.
+        match part > 0.0 && (part < 1.0 || (of.is_periodic && part == 1.0)) {
+            true => Ok((part, name)),
+            false => Err(at.key(key).wrong(found, expected)),
+        }
     }
 }

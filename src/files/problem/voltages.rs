@@ -1,20 +1,21 @@
 //! Voltages over time: by the names of sources, from an earlier `solution.json`, or a table in the problem.
 
-use serde::Deserialize;
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
-
 use crate::control::problem::{Afterwards, Voltages};
 use crate::files::json::document::Document;
+use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse};
-use crate::files::problem::at::At;
-use crate::files::problem::spec_voltages::{TableSpec, VoltagesSpec};
-use crate::files::signal::signal;
-use crate::files::signal::spec::SignalSpec;
+use crate::files::problem::at::{At, VoltageMap};
+use crate::files::signal::{SignalSpec, signal};
 use crate::files::solution::complete;
-use crate::files::units::quantity::{Quantity, Voltage};
+use crate::files::units::quantity::{Quantity, Time, Voltage};
 use crate::math::Signal;
 use crate::model::system::System;
+use schemars::JsonSchema;
+use serde::de::{Error, MapAccess, Unexpected, Visitor};
+use serde::{Deserialize, Deserializer};
+use std::collections::BTreeMap;
+use std::fmt;
+use std::path::{Path, PathBuf};
 
 /// Expected value of a path to an earlier result.
 pub(crate) const SOLUTION_PATH: &str =
@@ -80,16 +81,13 @@ fn of_solution(path: &Path, system: &System) -> Result<Voltages> {
     let all_series = solution.voltages.iter();
     let all_series = all_series.map(|(name, series)| (name, series.iter().copied()));
     let rows = rows(&instants, all_series, &at)?;
-    let hold = match &solution.hold {
-        Some(hold) => {
-            let mut row = vec![0.0; at.sources.len()];
-            for (name, &voltage) in hold {
-                row[at.key("hold").key(name).driven(name)?] = voltage;
-            }
-            Some(row)
+    let hold = at.optional("hold", &solution.hold, |at, hold| {
+        let mut row = vec![0.0; at.sources.len()];
+        for (name, &voltage) in hold {
+            row[at.key(name).driven(name)?] = voltage;
         }
-        None => None,
-    };
+        Ok(row)
+    })?;
     Ok(sampled(instants, rows, hold, Some(path.to_owned())))
 }
 
@@ -101,10 +99,7 @@ fn of_table(table: &TableSpec, at: &At<'_>) -> Result<Voltages> {
     let rows = rows(&instants, all_series, at)?;
     refuse!(if instants[0] != 0.0, at.key("time").index(0);
         found format!("{} s", instants[0] / 1e3), expected "0");
-    let hold = match &table.hold {
-        Some(hold) => Some(at.key("hold").voltages(hold)?),
-        None => None,
-    };
+    let hold = at.optional("hold", &table.hold, At::voltages)?;
     Ok(sampled(instants, rows, hold, None))
 }
 
@@ -153,5 +148,103 @@ fn sampled(
         afterwards,
         solution,
         others: BTreeMap::new(),
+    }
+}
+
+/// Voltages by muscle or driven electrode, constant or functions of time; 0 where not named; `{"solution": path}`, or `{"time": [...], "voltages": {...}}`.
+#[derive(Clone, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum VoltagesSpec {
+    /// Those of a `solution.json`.
+    Solution(SolutionSpec),
+    /// A table.
+    Table(TableSpec),
+    /// Constant, or functions of time.
+    Signals(BTreeMap<String, SignalSpec<Voltage>>),
+}
+
+read_objects! {
+    /// A solution by its path.
+    pub struct SolutionSpec {
+        /// Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder.
+        pub solution: String,
+    }
+}
+
+/// Voltages that are constant in intervals of time.
+#[derive(Clone, Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct TableSpec {
+    /// Start and end of the intervals, growing, the first of them 0; SI unit s.
+    pub time: Box<[Quantity<Time>]>,
+    /// A voltage for each interval by the names of muscles and driven electrodes (`block.electrode`), SI unit V; 0 where not
+    /// named.
+    pub voltages: BTreeMap<String, Box<[Quantity<Voltage>]>>,
+    /// Voltages after the last interval; those of the last interval where not written.
+    #[serde(default)]
+    pub hold: Option<VoltageMap>,
+}
+
+impl Default for VoltagesSpec {
+    fn default() -> Self {
+        Self::Signals(BTreeMap::new())
+    }
+}
+
+impl<'de> Deserialize<'de> for VoltagesSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_map(VoltagesVisitor)
+    }
+}
+
+struct VoltagesVisitor;
+
+impl<'de> Visitor<'de> for VoltagesVisitor {
+    type Value = VoltagesSpec;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(
+            "voltages by name, an object with \"solution\", or one with \"time\" and \"voltages\"",
+        )
+    }
+
+    fn visit_map<A: MapAccess<'de>>(self, mut map: A) -> Result<VoltagesSpec, A::Error> {
+        let mut signals = BTreeMap::new();
+        let (mut solution, mut time, mut voltages, mut hold) = (None, None, None, None);
+        while let Some(key) = map.next_key::<String>()? {
+            match key.as_str() {
+                "solution" => solution = Some(map.next_value()?),
+                "time" => time = Some(map.next_value()?),
+                "voltages" => voltages = Some(map.next_value()?),
+                "hold" => hold = Some(map.next_value()?),
+                _ => drop(signals.insert(key, map.next_value()?)),
+            }
+        }
+        let has_signals = !signals.is_empty();
+        match (solution, time, voltages, hold) {
+            (None, None, None, None) => Ok(VoltagesSpec::Signals(signals)),
+            (Some(solution), None, None, None) if !has_signals => {
+                Ok(VoltagesSpec::Solution(SolutionSpec { solution }))
+            }
+            (None, Some(time), Some(voltages), hold) if !has_signals => {
+                Ok(VoltagesSpec::Table(TableSpec {
+                    time,
+                    voltages,
+                    hold,
+                }))
+            }
+            (Some(_), ..) => {
+                let found = Unexpected::Other("\"solution\" beside voltages");
+                Err(A::Error::invalid_value(found, &self))
+            }
+            (None, time, voltages, _) => {
+                let lacks = match (time, voltages) {
+                    (None, _) => "a table without \"time\"",
+                    (_, None) => "a table without \"voltages\"",
+                    _ => "a table beside voltages by name",
+                };
+                Err(A::Error::invalid_value(Unexpected::Other(lacks), &self))
+            }
+        }
     }
 }

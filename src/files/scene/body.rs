@@ -14,10 +14,7 @@ use crate::model::system::{Body, Shape, directors_along, is_diagonal, principal}
 /// The body that is written.
 pub(crate) fn body(spec: &BodySpec, scope: &Scope<'_>) -> Result<Body> {
     check_keys(spec, scope)?;
-    let surface = match &spec.mesh {
-        Some(mesh) => Some(surface(mesh, &scope.key("mesh"))?),
-        None => None,
-    };
+    let surface = scope.optional("mesh", &spec.mesh, surface)?;
     let body = match (surface, &spec.inertia) {
         (Some(surface), None) => within(surface, spec, scope)?,
         (surface, inertia) => {
@@ -102,14 +99,12 @@ fn simple(spec: &BodySpec, scope: &Scope<'_>) -> Result<(Shape, Matrix3<f64>)> {
 }
 
 /// The surface of a mesh in the ground frame.
-fn surface(spec: &BodyMeshSpec, scope: &Scope<'_>) -> Result<Surface> {
-    let unit = match &spec.unit {
-        Some(unit) => scope.key("unit").positive(unit)?,
-        None => DEFAULT_UNIT,
-    };
+fn surface(scope: &Scope<'_>, spec: &BodyMeshSpec) -> Result<Surface> {
+    let unit = scope.optional("unit", &spec.unit, Scope::positive)?;
     let place = scope.key("file");
     let file = place.file(&spec.file, "the path of an STL file")?;
-    let surface = stl::read(&file, unit).map_err(|error| mesh_mistake(&error, &place))?;
+    let surface = stl::read(&file, unit.unwrap_or(DEFAULT_UNIT))
+        .map_err(|error| mesh_mistake(&error, &place))?;
     let origin = spec.at.as_ref().map_or_else(Vector3::zeros, vector);
     let Some(rotation) = &spec.rotation else {
         return Ok(surface.transformed(|x| x + origin));

@@ -4,7 +4,7 @@ use crate::files::json::path::JsonPath;
 use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::scene::body::body;
 use crate::files::scene::components::spring::ComponentSpec;
-use crate::files::scene::components::{component_lists, load};
+use crate::files::scene::components::{Carriers, component_lists, load};
 use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::graph::check_connected;
 use crate::files::scene::joint::joint;
@@ -53,9 +53,13 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     let joints = lists.build("joints", &scene.joints, |spec, scope| {
         joint(spec, &body_names, scope)
     })?;
-    let loads = lists.build("loads", &scene.loads, |spec, scope| {
-        load(spec, (&body_names, &joints, &muscles, &blocks), scope)
-    })?;
+    let on = Carriers {
+        bodies: &body_names,
+        joints: &joints,
+        muscles: &muscles,
+        solids: &blocks,
+    };
+    let loads = lists.build("loads", &scene.loads, |spec, scope| load(spec, &on, scope))?;
     let system = System {
         bodies: lists.build("bodies", &scene.bodies, body)?,
         muscles,
@@ -107,14 +111,10 @@ impl Elements {
     fn add(&self, count: usize, scope: &Scope<'_>) -> Result<()> {
         let total = self.0.get() + count;
         self.0.set(total);
-        if total <= MOST_ELEMENTS {
-            return Ok(());
-        }
-        let found = format!("{total} elements with those before");
-        Err(scope.wrong(
-            found,
-            format!("no more than {MOST_ELEMENTS} elements in all"),
-        ))
+        refuse!(if total > MOST_ELEMENTS, scope;
+            found format!("{total} elements with those before"),
+            expected format!("no more than {MOST_ELEMENTS} elements in all"));
+        Ok(())
     }
 }
 
@@ -271,15 +271,10 @@ pub(crate) fn marker(
 /// Refuses a place that is far from all nodes.
 fn check_near(mesh: &Mesh, at: &Vector3<f64>, scope: &Scope<'_>) -> Result<()> {
     let (node, distance) = nearest(mesh, at);
-    if distance.is_nan() || distance > size_at(mesh, node) {
-        let found = format!(
-            "{}, which is {distance:.3} mm away from the nearest node, at {}",
-            place(at),
-            place(&mesh.nodes[node])
-        );
-        let expected = "a place no farther from the block than the size of an element";
-        return Err(scope.wrong(found, expected));
-    }
+    let (from, to) = (place(at), place(&mesh.nodes[node]));
+    refuse!(if distance.is_nan() || distance > size_at(mesh, node), scope;
+        found format!("{from}, which is {distance:.3} mm away from the nearest node, at {to}"),
+        expected "a place no farther from the block than the size of an element");
     Ok(())
 }
 

@@ -28,47 +28,46 @@ pub(crate) fn electrodes(
     };
     for (index, electrode) in spec.electrodes.iter().enumerate() {
         let scope = scope.key("electrodes").index(index);
-        let place = (
-            electrode.face.as_ref(),
-            electrode.plane.as_ref(),
-            electrode.cuboid.as_ref(),
-        );
         let owner = format!("electrode {:?}", electrode.name);
-        let nodes = nodes(&owner, place, &meshed.mesh, &scope)?;
+        let nodes = nodes!(&owner, electrode, &meshed.mesh, &scope);
         let potential = match &electrode.potential {
             PotentialSpec::Grounded => Potential::Given(0.0),
             PotentialSpec::Floating => Potential::Floating,
             PotentialSpec::Driven => DRIVEN,
             PotentialSpec::Given(voltage) => Potential::Given(voltage.value()),
         };
-        let circuit = circuit(electrode.circuit.as_ref(), potential == DRIVEN, &scope)?;
-        let of = (electrode.name.as_str(), circuit);
-        placed.add(of, &nodes, potential, &scope)?;
+        let circuit = circuit(&electrode.circuit, potential == DRIVEN, &scope)?;
+        let electrode = Electrode {
+            name: electrode.name.clone(),
+            nodes,
+            potential,
+            circuit,
+        };
+        placed.add(electrode, &scope)?;
     }
     if let Some(stack) = &spec.stack {
         placed.add_stack(stack, meshed, &scope.key("stack"))?;
     }
     let is_floating = |electrode: &Electrode| electrode.potential == Potential::Floating;
-    if !placed.electrodes.is_empty() && placed.electrodes.iter().all(is_floating) {
-        let expected = "one that is grounded, driven or given, or more";
-        let place = scope.key("electrodes");
-        return Err(place.wrong("floating electrodes only", expected));
-    }
-    Ok(placed.electrodes)
+    let all = placed.electrodes;
+    refuse!(if !all.is_empty() && all.iter().all(is_floating), scope.key("electrodes");
+        found "floating electrodes only",
+        expected "one that is grounded, driven or given, or more");
+    Ok(all)
 }
 
 /// The circuit of an electrode.
 fn circuit(
-    spec: Option<&CircuitSpec>,
+    spec: &Option<CircuitSpec>,
     is_driven: bool,
     scope: &Scope<'_>,
 ) -> Result<Option<Circuit>> {
-    let Some(spec) = spec else { return Ok(None) };
-    let circuit = spec.circuit();
-    match circuit.check(is_driven, true) {
-        Ok(()) => Ok(Some(circuit)),
-        Err(fault) => Err(scope.key("circuit").refuse(spec, &fault)),
-    }
+    scope.optional("circuit", spec, |at, spec| {
+        let circuit = spec.circuit();
+        let checked = circuit.check(is_driven, true);
+        checked.map_err(|fault| at.refuse(spec, &fault))?;
+        Ok(circuit)
+    })
 }
 
 /// Electrodes with the owner of each node.
@@ -80,40 +79,28 @@ struct Placed<'a> {
 
 impl Placed<'_> {
     /// Adds an electrode, or its nodes to the driven one of the same name.
-    fn add(
-        &mut self,
-        (name, circuit): (&str, Option<Circuit>),
-        nodes: &[usize],
-        potential: Potential,
-        scope: &Scope<'_>,
-    ) -> Result<()> {
+    fn add(&mut self, new: Electrode, scope: &Scope<'_>) -> Result<()> {
+        let name = &new.name;
         refuse!(if name.is_empty(), scope.key("name"); found "\"\"", expected "a name");
-        let known = self.electrodes.iter().position(|other| other.name == name);
+        let known = self.electrodes.iter().position(|other| other.name == *name);
         let index = match known {
-            Some(known) if potential == DRIVEN && self.electrodes[known].potential == DRIVEN => {
-                if circuit.is_some() && self.electrodes[known].circuit != circuit {
-                    let found = format!("another circuit of {name:?}");
-                    let expected = "one circuit, at the first electrode of the name";
-                    return Err(scope.key("circuit").wrong(found, expected));
-                }
+            Some(known) => {
+                let other = &self.electrodes[known];
+                refuse!(if [new.potential, other.potential] != [DRIVEN; 2], scope.key("name");
+                    found format!("{name:?} a second time"),
+                    expected "a name that is not taken: only driven electrodes share one");
+                refuse!(if new.circuit.is_some() && other.circuit != new.circuit, scope.key("circuit");
+                    found format!("another circuit of {name:?}"),
+                    expected "one circuit, at the first electrode of the name");
                 known
             }
-            Some(_) => {
-                let found = format!("{name:?} a second time");
-                let expected = "a name that is not taken: only driven electrodes share one";
-                return Err(scope.key("name").wrong(found, expected));
-            }
             None => {
-                self.electrodes.push(Electrode {
-                    name: name.to_owned(),
-                    nodes: Vec::new(),
-                    potential,
-                    circuit,
-                });
+                let (name, nodes) = (name.clone(), Vec::new());
+                self.electrodes.push(Electrode { name, nodes, ..new });
                 self.electrodes.len() - 1
             }
         };
-        for &node in nodes {
+        for &node in &new.nodes {
             match self.owners.insert(node, index) {
                 None => self.electrodes[index].nodes.push(node),
                 Some(owner) if owner == index => {}
@@ -137,20 +124,30 @@ impl Placed<'_> {
         let mut parts = [Vec::new(), Vec::new()];
         for (layer, at) in boundaries.into_iter().enumerate() {
             let nodes = in_plane(self.mesh, axis, at);
-            if nodes.is_empty() {
-                let found = format!(
+            refuse!(if nodes.is_empty(), scope;
+                found format!(
                     "layers of the electrode {:?} of which one begins at {} = {at} mm, where no node is",
                     stack.name, AXES[axis]
-                );
-                return Err(scope.wrong(found, planes_near(self.mesh, axis, at)));
-            }
+                ),
+                expected planes_near(self.mesh, axis, at));
             parts[layer % 2].extend(nodes);
         }
         let [grounded, driven] = parts;
-        let ground = format!("{}_ground", stack.name);
-        let circuit = circuit(stack.circuit.as_ref(), true, scope)?;
-        self.add((&ground, None), &grounded, Potential::Given(0.0), scope)?;
-        self.add((&stack.name, circuit), &driven, DRIVEN, scope)
+        let circuit = circuit(&stack.circuit, true, scope)?;
+        let ground = Electrode {
+            name: format!("{}_ground", stack.name),
+            nodes: grounded,
+            potential: Potential::Given(0.0),
+            circuit: None,
+        };
+        self.add(ground, scope)?;
+        let driven = Electrode {
+            name: stack.name.clone(),
+            nodes: driven,
+            potential: DRIVEN,
+            circuit,
+        };
+        self.add(driven, scope)
     }
 }
 

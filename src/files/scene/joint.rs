@@ -4,8 +4,7 @@ use crate::files::json::objects::objects;
 use crate::files::json::scope::{Result, Scope, the_one};
 use crate::files::scene::names::find_body;
 use crate::files::scene::point::{Point, unit_axis, vector};
-use crate::files::signal::signal;
-use crate::files::signal::spec::SignalSpec;
+use crate::files::signal::{SignalSpec, signal};
 use crate::files::units::quantity::{
     Angle, Damping, JointCoordinate, JointDamping, JointStiffness, Kind, Length, PhysicalQuantity,
     Quantity, RotationalDamping, RotationalStiffness, Stiffness,
@@ -32,16 +31,14 @@ pub(super) fn joint(spec: &JointSpec, bodies: &[String], scope: &Scope<'_>) -> R
     let kinds = kinds(&kind);
     let [coordinate, of_damping, of_stiffness] = &kinds;
     let rest = at_rest(spec, &kind, scope)?;
-    let damping = read(spec.damping.as_ref(), of_damping, &scope.key("damping"))?;
-    let stiffness = read(
-        spec.stiffness.as_ref(),
-        of_stiffness,
-        &scope.key("stiffness"),
-    )?;
-    let stops = spec.stops.as_ref();
-    let stops = stops.map(|written| stops_of(written, &kinds, &scope.key("stops")));
-    let motion = spec.motion.as_ref();
-    let motion = motion.map(|motion| signal(motion, coordinate, &scope.key("motion")));
+    let damping = read("damping", &spec.damping, of_damping, scope)?;
+    let stiffness = read("stiffness", &spec.stiffness, of_stiffness, scope)?;
+    let stops = scope.optional("stops", &spec.stops, |at, stops| {
+        stops_of(stops, &kinds, at)
+    })?;
+    let motion = scope.optional("motion", &spec.motion, |at, motion| {
+        signal(motion, coordinate, at)
+    })?;
     // A value of zero leaves no trace.
     let stiffness = stiffness.filter(|stiffness| *stiffness != 0.0);
     let joint = Joint {
@@ -52,8 +49,8 @@ pub(super) fn joint(spec: &JointSpec, bodies: &[String], scope: &Scope<'_>) -> R
         at: vector(&spec.at),
         damping: damping.filter(|damping| *damping != 0.0),
         spring: stiffness.map(|stiffness| JointSpring { stiffness, rest }),
-        stops: stops.transpose()?.flatten(),
-        motion: motion.transpose()?,
+        stops: stops.flatten(),
+        motion,
     };
     joint.check().map_err(|fault| scope.refuse(spec, &fault))?;
     Ok(match spec.locked {
@@ -109,15 +106,14 @@ fn kinds(joint: &JointKind) -> [Kind; 3] {
     }
 }
 
-/// The value of a kind that is written, where there is one.
+/// The value of a kind that is written under a key, where there is one.
 fn read<M: PhysicalQuantity>(
-    written: Option<&Quantity<M>>,
+    key: &str,
+    written: &Option<Quantity<M>>,
     kind: &Kind,
-    place: &Scope<'_>,
+    scope: &Scope<'_>,
 ) -> Result<Option<f64>> {
-    written
-        .map(|written| place.value_as(written, kind))
-        .transpose()
+    scope.optional(key, written, |at, written| at.value_as(written, kind))
 }
 
 fn stops_of(
@@ -125,20 +121,22 @@ fn stops_of(
     [coordinate, _, stiffness]: &[Kind; 3],
     scope: &Scope<'_>,
 ) -> Result<Option<JointStops>> {
-    let bound = |key: &str, written: &Option<Quantity<JointCoordinate>>| {
-        read(written.as_ref(), coordinate, &scope.key(key))
+    let bound = |key: &str, written: &Option<Quantity<JointCoordinate>>, unwritten: f64| {
+        let bound = read(key, written, coordinate, scope);
+        bound.map(|bound| bound.unwrap_or(unwritten))
     };
-    let stiffness = read(Some(&spec.stiffness), stiffness, &scope.key("stiffness"))?;
-    let [min, max] = [bound("min", &spec.min)?, bound("max", &spec.max)?];
-    let smoothing = bound("smoothing", &spec.smoothing)?.unwrap_or(0.0);
-    Ok(stiffness.filter(|k| *k != 0.0).map(|stiffness| JointStops {
+    let stiffness = scope
+        .key("stiffness")
+        .value_as(&spec.stiffness, stiffness)?;
+    let stops = JointStops {
         at: [
-            min.unwrap_or(f64::NEG_INFINITY),
-            max.unwrap_or(f64::INFINITY),
+            bound("min", &spec.min, f64::NEG_INFINITY)?,
+            bound("max", &spec.max, f64::INFINITY)?,
         ],
         stiffness,
-        smoothing,
-    }))
+        smoothing: bound("smoothing", &spec.smoothing, 0.0)?,
+    };
+    Ok((stiffness != 0.0).then_some(stops))
 }
 
 /// The coordinate without force: zero where none is written.

@@ -2,7 +2,7 @@
 
 use crate::energy::ElasticLaw;
 use crate::files::json::objects::objects;
-use crate::files::json::scope::{Result, Scope, the_one};
+use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::units::quantity::{Density, Permittivity, Quantity, Stress, Time, Viscosity};
 use crate::model::MOST_BRANCHES;
 use crate::model::system::{
@@ -15,19 +15,16 @@ pub(crate) fn materials(
     specs: &BTreeMap<String, MaterialSpec>,
     scope: &Scope<'_>,
 ) -> Result<Vec<(String, Material)>> {
-    let material = |(name, spec): (&String, &MaterialSpec)| {
-        let material = material(spec, &scope.key(name))?;
-        Ok((name.clone(), material))
-    };
-    specs.iter().map(material).collect()
+    scope.each_named(specs, |name, spec, scope| {
+        Ok((name.to_owned(), material(spec, scope)?))
+    })
 }
 
 fn material(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Material> {
-    let law = spec.law.as_ref().map(|law| law.law(&scope.key("law")));
     let material = Material {
         density: Quantity::present(&spec.density),
         shear_modulus: spec.shear_modulus.value(),
-        law: law.transpose()?,
+        law: scope.optional("law", &spec.law, |at, law| law.law(at))?,
         lame_lambda: lame_lambda(spec, scope)?,
         electric: electric(spec, scope)?,
         viscosity: Quantity::present(&spec.viscosity),
@@ -59,11 +56,10 @@ fn lame_lambda(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<f64>> {
         (None, Some(ratio)) if ratio > -1.0 && ratio < 0.5 => {
             Ok(Some(Material::first_lame_constant(shear_modulus, ratio)))
         }
-        (None, Some(ratio)) => {
-            let expected = "a number larger than -1 and smaller than 0.5";
-            let place = scope.key("poisson_ratio");
-            Err(place.wrong(ratio.to_string(), expected))
-        }
+        (None, Some(ratio)) => Err(scope.key("poisson_ratio").wrong(
+            ratio.to_string(),
+            "a number larger than -1 and smaller than 0.5",
+        )),
         (Some(_), Some(_)) => {
             let found = "\"lame_lambda\" and \"poisson_ratio\"";
             Err(scope.wrong(found, "one of the two"))
@@ -74,12 +70,8 @@ fn lame_lambda(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<f64>> {
 /// Constants of the electric energy, where the material has one.
 fn electric(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<ElectricConstants>> {
     let ratio = spec.relative_permittivity;
-    if let (None, Some(_)) = (ratio, spec.dielectric) {
-        let expected = "\"relative_permittivity\" beside it";
-        return Err(scope
-            .key("dielectric")
-            .wrong("\"dielectric\" alone", expected));
-    }
+    refuse!(if ratio.is_none() && spec.dielectric.is_some(), scope.key("dielectric");
+        found "\"dielectric\" alone", expected "\"relative_permittivity\" beside it");
     let (c1, c2) = (spec.c1.as_ref(), spec.c2.as_ref());
     match (ratio, c1, c2) {
         (None, None, None) => Ok(None),

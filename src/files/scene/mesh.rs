@@ -24,10 +24,8 @@ pub(crate) struct Meshed {
 pub(crate) fn meshed(spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed> {
     let (meshed, place) = the_one!(scope, spec;
         "box" cuboid |place, cuboid| {
-            if let Some(unit) = &spec.unit {
-                let expected = "no such key: the lengths of a box have units of their own";
-                return Err(scope.key("unit").wrong(unit.to_string(), expected));
-            }
+            refuse!(if let Some(unit) = &spec.unit, scope.key("unit");
+                found unit, expected "no such key: the lengths of a box have units of their own");
             (boxed(cuboid, place)?, place.clone())
         };
         "mesh" mesh |place, path| (from_file(path, spec, scope)?, place.clone());
@@ -38,10 +36,8 @@ pub(crate) fn meshed(spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed> {
 }
 
 fn from_file(path: &str, spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed> {
-    let unit = match &spec.unit {
-        Some(unit) => scope.key("unit").positive(unit)?,
-        None => DEFAULT_UNIT,
-    };
+    let unit = scope.optional("unit", &spec.unit, Scope::positive)?;
+    let unit = unit.unwrap_or(DEFAULT_UNIT);
     let scope = scope.key("mesh");
     let file = scope.file(path, "the path of a Gmsh file")?;
     let mesh = gmsh::read(&file, unit).map_err(|error| mesh_mistake(&error, &scope))?;
@@ -131,11 +127,9 @@ fn name_regions(
         let Some(first) = layers.iter().position(|layer| layer.region.is_some()) else {
             continue;
         };
-        if named.replace((axis, layers)).is_some() {
-            let place = scope.index(axis).index(first).key("region");
-            let found = "a region in a second direction";
-            return Err(place.wrong(found, "regions along one direction only"));
-        }
+        let place = scope.index(axis).index(first).key("region");
+        refuse!(if named.replace((axis, layers)).is_some(), place;
+            found "a region in a second direction", expected "regions along one direction only");
     }
     let Some((axis, layers)) = named else {
         return Ok(());

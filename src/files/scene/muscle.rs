@@ -62,12 +62,13 @@ fn fidelity(
     };
     let checked = check_elements(elements);
     checked.map_err(|fault| scope.key("elements").refuse(&elements, &fault))?;
-    let side = spec.first_side.as_ref();
-    let side = side.map(|side| unit_axis(side, &scope.key("first_side")));
+    let first_side = scope.optional("first_side", &spec.first_side, |at, side| {
+        unit_axis(side, at)
+    })?;
     Ok(Fidelity::FiniteElements(Discretisation {
         elements,
         layers: spec.layers.unwrap_or(elements[2]),
         element: spec.element.unwrap_or_default().into(),
-        first_side: side.transpose()?,
+        first_side,
     }))
 }

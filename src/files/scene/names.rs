@@ -1,7 +1,7 @@
 //! Resolution of names in a scene: bodies, points of bodies, materials.
 
 use crate::energy::ElasticLaw;
-use crate::files::json::scope::{Result, Scope, list};
+use crate::files::json::scope::{Result, Scope, list, refuse};
 use crate::files::scene::material::named_materials;
 use crate::files::scene::point::{PointSpec, vector};
 use crate::model::system::{Attachment, Material};
@@ -38,19 +38,13 @@ pub(crate) fn find_compressible(
     scope: &Scope<'_>,
 ) -> Result<Material> {
     let material = find_material(name, materials, scope)?;
-    if let Some(ElasticLaw::Ogden { .. }) = material.law {
-        let found = format!("{name:?}, which follows Ogden's law");
-        let expected = "a law of the invariants of the strain, as \"yeoh\": only lumped muscles follow Ogden's";
-        return Err(scope.wrong(found, expected));
-    }
-    if material.lame_lambda.is_some() {
-        return Ok(material);
-    }
-    let found = format!("{name:?}, which has neither \"lame_lambda\" nor \"poisson_ratio\"");
-    Err(scope.wrong(
-        found,
-        "a material with one of them, as finite elements need it",
-    ))
+    refuse!(if let Some(ElasticLaw::Ogden { .. }) = material.law, scope;
+        found format!("{name:?}, which follows Ogden's law"),
+        expected "a law of the invariants of the strain, as \"yeoh\": only lumped muscles follow Ogden's");
+    refuse!(if material.lame_lambda.is_none(), scope;
+        found format!("{name:?}, which has neither \"lame_lambda\" nor \"poisson_ratio\""),
+        expected "a material with one of them, as finite elements need it");
+    Ok(material)
 }
 
 impl PointSpec {

@@ -16,18 +16,17 @@ const NAMED_PLANES: usize = 9;
 /// Names of the coordinates.
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// The nodes of exactly one of `face`, `plane` and `box`, ascending; `owner` is what lies there, for messages.
-pub(crate) fn nodes(
-    owner: &str,
-    (name, plane, cuboid): (Option<&String>, Option<&PlaneSpec>, Option<&CornersSpec>),
-    mesh: &Mesh,
-    scope: &Scope<'_>,
-) -> Result<Vec<usize>> {
-    let of_face = name.map(|name| face(name, mesh, &scope.key("face")).map(<[usize]>::to_vec));
-    let of_plane = plane.map(|plane| nodes_in_plane(owner, plane, mesh, &scope.key("plane")));
-    let of_box = cuboid.map(|corners| nodes_in_box(owner, corners, mesh, &scope.key("box")));
-    scope.exactly_one([("face", of_face), ("plane", of_plane), ("box", of_box)])?
+/// The nodes of exactly one of `face`, `plane` and `box` of what is written, ascending; `owner` is what lies there, for messages.
+macro_rules! nodes {
+    ($owner:expr, $spec:expr, $mesh:expr, $scope:expr) => {
+        $crate::files::json::scope::the_one!($scope, $spec;
+            "face" face |at, name| $crate::files::scene::nodes::face(name, $mesh, at)?.to_vec();
+            "plane" plane |at, plane| $crate::files::scene::nodes::nodes_in_plane($owner, plane, $mesh, at)?;
+            "box" cuboid |at, corners| $crate::files::scene::nodes::nodes_in_box($owner, corners, $mesh, at)?;
+        )
+    };
 }
+pub(crate) use nodes;
 
 /// The nodes of a face or set whose name stands at `scope`.
 pub(crate) fn face<'a>(name: &str, mesh: &'a Mesh, scope: &Scope<'_>) -> Result<&'a [usize]> {
@@ -43,7 +42,7 @@ pub(crate) fn face<'a>(name: &str, mesh: &'a Mesh, scope: &Scope<'_>) -> Result<
     Ok(nodes)
 }
 
-fn nodes_in_plane(
+pub(crate) fn nodes_in_plane(
     owner: &str,
     plane: &PlaneSpec,
     mesh: &Mesh,
@@ -89,7 +88,7 @@ pub(crate) fn planes_near(mesh: &Mesh, axis: usize, at: f64) -> String {
     format!("a plane with nodes: the mesh has some at {axis} = {before}{shown}{after} mm")
 }
 
-fn nodes_in_box(
+pub(crate) fn nodes_in_box(
     owner: &str,
     corners: &CornersSpec,
     mesh: &Mesh,

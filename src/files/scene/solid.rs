@@ -33,11 +33,10 @@ pub(crate) fn solid(
     let passive = of_region
         .iter()
         .position(|material| material.electric.is_none());
-    if let Some(region) = passive.filter(|_| !electrodes.is_empty()) {
-        let (name, place) = &by_region[region];
-        let found = format!("{name:?}, which has no electric term, in a block with electrodes");
-        return Err(place.wrong(found, ELECTRIC_KEYS));
-    }
+    let passive = passive.filter(|_| !electrodes.is_empty());
+    refuse!(if let Some((name, place)) = passive.map(|region| &by_region[region]), place;
+        found format!("{name:?}, which has no electric term, in a block with electrodes"),
+        expected ELECTRIC_KEYS);
     let Meshed { mesh, .. } = meshed;
     let (glued, grounded) = glued(spec, &mesh, bodies, &scope.key("glued"))?;
     let mut supports = supports(spec, &mesh, &scope.key("fixed"))?;
@@ -113,18 +112,11 @@ fn supports(spec: &SolidSpec, mesh: &Mesh, scope: &Scope<'_>) -> Result<Vec<Supp
             }
             FixedSpec::Held(held) => held,
         };
-        let place = (
-            held.face.as_ref(),
-            held.plane.as_ref(),
-            held.cuboid.as_ref(),
-        );
-        let nodes = nodes("a support", place, mesh, scope)?;
+        let nodes = nodes!("a support", held, mesh, scope);
         let directions = held.directions.as_deref();
         let held = directions.map_or([true; 3], along);
-        if held == [false; 3] {
-            let expected = "one of \"x\", \"y\", \"z\" or more";
-            return Err(scope.key("directions").wrong("no direction", expected));
-        }
+        refuse!(if held == [false; 3], scope.key("directions");
+            found "no direction", expected "one of \"x\", \"y\", \"z\" or more");
         Ok(Support { nodes, held })
     })
 }
@@ -198,11 +190,9 @@ pub(super) fn prestretch(
     };
     let written = [("x", spec.x), ("y", spec.y), ("z", spec.z)];
     for (axis, stretch) in written {
-        if let Some(stretch) = stretch.filter(|stretch| !(*stretch > 0.0 && stretch.is_finite())) {
-            return Err(scope
-                .key(axis)
-                .wrong(stretch.to_string(), "a positive stretch"));
-        }
+        let wrong = stretch.filter(|stretch| !(*stretch > 0.0 && stretch.is_finite()));
+        refuse!(if let Some(stretch) = wrong, scope.key(axis);
+            found stretch, expected "a positive stretch");
     }
     let given = || written.iter().filter_map(|(_, stretch)| *stretch);
     let others = 3 - given().count();

@@ -74,9 +74,10 @@ fn parse(path: &Path, model: &Model) -> Result<Solution> {
     let loads = load_columns(file.loads.as_ref(), model)?;
     let joints = joint_rows(by_joint, system, instants)?;
     let voltages = input_rows([by_source, &loads], model, instants - 1)?;
+    let loads = file.hold_loads.as_ref();
     let held = file.hold.as_ref();
-    let held = held.map(|held| hold((held, file.hold_loads.as_ref()), voltages.last(), model));
-    let hold = held.transpose()?;
+    let hold = held.map(|held| hold(held, loads, voltages.last(), model));
+    let hold = hold.transpose()?;
     let poses = poses(file.configuration.as_ref(), system, instants)?;
     let coordinates = coordinates(file.coordinates.as_deref(), model)?;
     let state = match file.state {
@@ -137,7 +138,7 @@ fn voltage_columns<'f>(columns: Option<&'f Columns>, model: &Model) -> Result<&'
         place: ".".to_owned(),
         found: "missing field `voltages`".to_owned(),
     })?;
-    same_sources(columns.keys(), model)?;
+    same_inputs(0, columns, model)?;
     Ok(columns)
 }
 
@@ -158,7 +159,7 @@ fn joint_rows(columns: &Columns, system: &System, instants: usize) -> Result<Vec
 /// Loads by their names, one column for each that acts in the scene.
 fn load_columns(columns: Option<&Columns>, model: &Model) -> Result<Columns> {
     let columns = columns.cloned().unwrap_or_default();
-    same_loads(columns.keys(), model)?;
+    same_inputs(1, &columns, model)?;
     Ok(columns)
 }
 
@@ -188,13 +189,14 @@ fn input_rows(
 
 /// Inputs by source that hold the goal: these voltages, and these loads or those of the last interval.
 fn hold(
-    (held, loads): (&BTreeMap<String, f64>, Option<&BTreeMap<String, f64>>),
+    held: &BTreeMap<String, f64>,
+    loads: Option<&BTreeMap<String, f64>>,
     last: Option<&Vec<f64>>,
     model: &Model,
 ) -> Result<Vec<f64>> {
-    same_sources(held.keys(), model)?;
+    same_inputs(0, held, model)?;
     if let Some(loads) = loads {
-        same_loads(loads.keys(), model)?;
+        same_inputs(1, loads, model)?;
     }
     let value = |(s, source): (usize, &Source)| {
         let load = || {
@@ -296,20 +298,15 @@ fn poses(
     Ok(poses)
 }
 
-/// Checks that names are those of the sources that the voltages of the scene reach.
-fn same_sources<'a>(names: impl Iterator<Item = &'a String>, model: &'a Model) -> Result<()> {
-    let driven = model.reached.iter().map(|&s| &model.sources[s]);
-    let driven = driven.filter(|source| !source.is_load());
-    let driven = driven.map(|source| source.name.as_str());
-    same_names("muscle or electrode", names.map(String::as_str), driven)
-}
+/// Kinds of inputs, for messages: those with voltages, then loads.
+const KINDS: [&str; 2] = ["muscle or electrode", "load"];
 
-/// Checks that names are those of the loads that act in the scene.
-fn same_loads<'a>(names: impl Iterator<Item = &'a String>, model: &'a Model) -> Result<()> {
-    let loads = model.reached.iter().map(|&s| &model.sources[s]);
-    let loads = loads.filter(|source| source.is_load());
-    let loads = loads.map(|source| source.name.as_str());
-    same_names("load", names.map(String::as_str), loads)
+/// Checks that names are those of the inputs of a kind that reach the scene.
+fn same_inputs<T>(kind: usize, columns: &BTreeMap<String, T>, model: &Model) -> Result<()> {
+    let inputs = model.reached.iter().map(|&s| &model.sources[s]);
+    let inputs = inputs.filter(|source| usize::from(source.is_load()) == kind);
+    let inputs = inputs.map(|source| source.name.as_str());
+    same_names(KINDS[kind], columns.keys().map(String::as_str), inputs)
 }
 
 fn same_names<'a>(

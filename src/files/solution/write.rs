@@ -52,7 +52,6 @@ fn numbers(solved: &Solution) -> usize {
     12 * poses + lists.into_iter().map(|list| rows(list)).sum::<usize>()
 }
 
-/// Returns the record that is written.
 /// Loads that hold the goal in N and N m, where one is not that of the last interval.
 fn hold_loads(model: &Model, solved: &Solution) -> Option<BTreeMap<String, f64>> {
     let (held, last) = (solved.hold.as_ref()?, solved.voltages.last()?);
@@ -64,6 +63,7 @@ fn hold_loads(model: &Model, solved: &Solution) -> Option<BTreeMap<String, f64>>
     differs.then(|| loads.iter().map(value).collect())
 }
 
+/// Returns the record that is written.
 fn record(model: &Model, solved: &Solution) -> File {
     let system = &model.system;
     let columns = |j: usize, unit: f64| solved.joints.iter().map(|row| row[j] / unit).collect();

@@ -2,6 +2,5 @@
 
 pub mod quantity;
 pub(crate) mod unit;
-mod written;
 
-pub(crate) use written::si;
+pub(crate) use unit::si;

@@ -1,9 +1,8 @@
 //! Quantities as written in JSON: numbers in SI units or strings with a unit, converted once to g, mm, ms, N, MPa, V.
 
-use crate::files::units::unit::{Dimension, Unit, scale};
-use crate::files::units::written::{Written, parts, symbol};
+use crate::files::json::either::Scalar;
+use crate::files::units::unit::{Dimension, Unit, Written, parts, scale, symbol};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
-use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
 use std::fmt;
@@ -325,44 +324,11 @@ impl<M> Serialize for Quantity<M> {
 
 impl<'de, M: PhysicalQuantity> Deserialize<'de> for Quantity<M> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(QuantityVisitor(PhantomData))
-    }
-}
-
-struct QuantityVisitor<M>(PhantomData<M>);
-
-impl<M: PhysicalQuantity> QuantityVisitor<M> {
-    fn wrong<T, E: Error>(found: Result<T, String>) -> Result<T, E> {
-        found.map_err(|found| {
-            E::invalid_value(
-                Unexpected::Other(&found),
-                &Quantity::<M>::expected().as_str(),
-            )
+        deserializer.deserialize_any(Scalar {
+            expected: Self::expected,
+            number: Self::try_from_number,
+            text: Self::try_from_text,
         })
-    }
-}
-
-impl<M: PhysicalQuantity> Visitor<'_> for QuantityVisitor<M> {
-    type Value = Quantity<M>;
-
-    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(&Quantity::<M>::expected())
-    }
-
-    fn visit_f64<E: Error>(self, number: f64) -> Result<Self::Value, E> {
-        Self::wrong(Quantity::try_from_number(number))
-    }
-
-    fn visit_i64<E: Error>(self, number: i64) -> Result<Self::Value, E> {
-        self.visit_f64(number as f64)
-    }
-
-    fn visit_u64<E: Error>(self, number: u64) -> Result<Self::Value, E> {
-        self.visit_f64(number as f64)
-    }
-
-    fn visit_str<E: Error>(self, text: &str) -> Result<Self::Value, E> {
-        Self::wrong(Quantity::try_from_text(text))
     }
 }
 

@@ -26,7 +26,8 @@ pub(super) enum Outline {
 pub(super) fn outline(
     visuals: &[Visual],
     centre: &Vector3<f64>,
-    (path, owner): (&Path, &str),
+    path: &Path,
+    owner: &str,
     left_out: &mut LeftOut,
 ) -> Outline {
     if let [visual] = visuals

@@ -4,6 +4,7 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 use roxmltree::{Document, Node};
 use std::path::Path;
 
+use crate::files::json::scope::refuse;
 use crate::files::scene::point::direction;
 use crate::files::urdf::element::{Element, LeftOut, Result};
 use crate::model::system::principal;
@@ -85,10 +86,8 @@ pub(super) fn robot<'a>(
         owner: "the robot".to_owned(),
         path,
     };
-    if !root.node.has_tag_name("robot") {
-        let found = format!("<{}>", root.node.tag_name().name());
-        return Err(root.wrong(found, "<robot>"));
-    }
+    refuse!(if !root.node.has_tag_name("robot"), root;
+        found format!("<{}>", root.node.tag_name().name()), expected "<robot>");
     root.only(&["link", "joint"], &["name", "version"], left_out);
     let owned = |element: Element<'a>, kind: &str| -> Result<(Element<'a>, String)> {
         let name = element.word("name")?.to_owned();
@@ -141,12 +140,8 @@ fn inertial(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Iner
     let mass = element.needed("mass")?;
     mass.only(&[], &["value"], left_out);
     let value = mass.number("value")?;
-    if value < 0.0 {
-        return Err(mass.wrong(
-            format!("a mass of {value} kg"),
-            "a mass that is not negative",
-        ));
-    }
+    refuse!(if value < 0.0, mass;
+        found format!("a mass of {value} kg"), expected "a mass that is not negative");
     let inertia = element.needed("inertia")?;
     let names = ["ixx", "ixy", "ixz", "iyy", "iyz", "izz"];
     inertia.only(&[], &names, left_out);
@@ -167,11 +162,10 @@ fn inertial(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Iner
     let tensor = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
     let moments = Vector3::from(principal(&tensor).0);
     let largest = moments.max();
-    if moments.min() <= 0.0 || moments.sum() - 2.0 * largest < -ROUNDING * largest {
-        let found = format!("principal moments of {:?} kg m^2", moments.as_slice());
-        let expected = "positive moments of which none is larger than the sum of the two others";
-        return Err(inertia.wrong(found, expected));
-    }
+    let exceeds = moments.sum() - 2.0 * largest < -ROUNDING * largest;
+    refuse!(if moments.min() <= 0.0 || exceeds, inertia;
+        found format!("principal moments of {:?} kg m^2", moments.as_slice()),
+        expected "positive moments of which none is larger than the sum of the two others");
     Ok(Some(Inertial {
         pose,
         mass: value,
@@ -195,9 +189,8 @@ fn geometry(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Geom
     if let Some(cuboid) = element.child("box")? {
         cuboid.only(&[], &["size"], left_out);
         let size = cuboid.numbers::<3>("size")?;
-        if size.iter().any(|side| *side <= 0.0) {
-            return Err(cuboid.wrong(format!("size={size:?}"), "positive lengths"));
-        }
+        refuse!(if size.iter().any(|side| *side <= 0.0), cuboid;
+            found format!("size={size:?}"), expected "positive lengths");
         return Ok(Some(Geometry::Box(size)));
     }
     if let Some(cylinder) = element.child("cylinder")? {
@@ -217,9 +210,8 @@ fn geometry(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Geom
         true => mesh.numbers("scale")?,
         false => [1.0_f64; 3],
     };
-    if scale.contains(&0.0) {
-        return Err(mesh.wrong(format!("scale={scale:?}"), "factors other than zero"));
-    }
+    refuse!(if scale.contains(&0.0), mesh;
+        found format!("scale={scale:?}"), expected "factors other than zero");
     let file = mesh.word("filename")?.to_owned();
     Ok(Some(Geometry::Mesh { file, scale }))
 }

@@ -5,6 +5,7 @@ use serde_json::{Map, Value, json};
 use std::path::Path;
 
 use crate::files::json::layout::lay_out;
+use crate::files::json::scope::refuse;
 use crate::files::scene::spec::SceneSpec;
 use crate::files::stl;
 use crate::files::urdf::element::{LeftOut, Result};
@@ -41,14 +42,14 @@ pub(super) fn scene(
         let written = &robot.links[link];
         match &written.inertial {
             Some(inertial) => {
-                if written.name == GROUND {
-                    return Err(written.element.wrong("a body of this name", "another name"));
-                }
+                refuse!(if written.name == GROUND, written.element;
+                    found "a body of this name", expected "another name");
                 let visuals = visuals(link, robot, tree);
-                let place = (path, written.element.owner.as_str());
-                let centre = tree.pose[link] * inertial.pose;
-                let shape = outline(&visuals, &centre.translation.vector, place, &mut left_out);
-                bodies.push(body(&written.name, inertial, &centre, shape, &mut meshes));
+                let owner = written.element.owner.as_str();
+                let pose = tree.pose[link] * inertial.pose;
+                let centre = &pose.translation.vector;
+                let shape = outline(&visuals, centre, path, owner, &mut left_out);
+                bodies.push(body(&written.name, inertial, &pose, shape, &mut meshes));
             }
             None if tree.parent[link].is_some() => markers.push(json!({
                 "name": written.name,
@@ -78,11 +79,8 @@ pub(super) fn scene(
             joints.push(self::joint(joint, &tree.pose[link], carrier(parent, robot)));
         }
     }
-    if bodies.is_empty() {
-        return Err(robot
-            .element
-            .wrong("no link with a mass", "<inertial> of a link"));
-    }
+    refuse!(if bodies.is_empty(), robot.element;
+        found "no link with a mass", expected "<inertial> of a link");
     notes.push("gravity of 9.81 m/s^2 is along -z, as z points upwards in URDF".to_owned());
     notes.extend(left_out.notes());
     let mut scene = json!({

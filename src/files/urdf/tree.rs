@@ -3,6 +3,7 @@
 use nalgebra::Isometry3;
 use std::collections::BTreeMap;
 
+use crate::files::json::scope::refuse;
 use crate::files::urdf::element::Result;
 use crate::files::urdf::read::{Kind, Robot};
 
@@ -25,28 +26,21 @@ pub(super) fn tree(robot: &Robot<'_>) -> Result<Tree> {
     let count = robot.links.len();
     let mut index = BTreeMap::new();
     for (i, link) in robot.links.iter().enumerate() {
-        if index.insert(link.name.as_str(), i).is_some() {
-            return Err(link
-                .element
-                .wrong("its name a second time", "a name of its own"));
-        }
+        refuse!(if index.insert(link.name.as_str(), i).is_some(), link.element;
+            found "its name a second time", expected "a name of its own");
     }
     let (mut joint, mut parent) = (vec![None; count], vec![None; count]);
     let mut children = vec![Vec::new(); count];
     for (j, written) in robot.joints.iter().enumerate() {
         let find = |name: &str| {
-            let missing = || {
-                written
-                    .element
-                    .wrong(format!("{name:?}"), "the name of a link")
-            };
-            index.get(name).copied().ok_or_else(missing)
+            let (element, found) = (&written.element, format!("{name:?}"));
+            let index = index.get(name).copied();
+            index.ok_or_else(|| element.wrong(found, "the name of a link"))
         };
         let (from, to) = (find(&written.parent)?, find(&written.child)?);
-        if joint[to].replace(j).is_some() {
-            let found = format!("a second joint with the child {:?}", written.child);
-            return Err(written.element.wrong(found, "one joint to each child"));
-        }
+        refuse!(if joint[to].replace(j).is_some(), written.element;
+            found format!("a second joint with the child {:?}", written.child),
+            expected "one joint to each child");
         parent[to] = Some(from);
         children[from].push(to);
     }
@@ -79,13 +73,11 @@ pub(super) fn tree(robot: &Robot<'_>) -> Result<Tree> {
         tree.order.extend(&children[link]);
         next += 1;
     }
-    match (0..count).find(|link| !tree.order.contains(link)) {
-        None => Ok(tree),
-        Some(link) => {
-            let found = "a link in a loop of joints, which the root is no part of";
-            Err(robot.links[link].element.wrong(found, "a tree of links"))
-        }
-    }
+    let apart = (0..count).find(|link| !tree.order.contains(link));
+    refuse!(if let Some(link) = apart, robot.links[link].element;
+        found "a link in a loop of joints, which the root is no part of",
+        expected "a tree of links");
+    Ok(tree)
 }
 
 impl Tree {

@@ -21,11 +21,6 @@ read_objects! {
 pub(super) trait LimitEntry {
     /// The limits that it stands for.
     fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>>;
-
-    /// Returns true if it bounds what follows from constants alone.
-    fn is_timeless(&self) -> bool {
-        false
-    }
 }
 
 /// An entry of the costs of a problem, along the motion or at its end, which stands under its key.
@@ -36,6 +31,52 @@ pub(super) trait CostEntry {
 
 /// A quantity, and its function in a cost.
 pub(super) type Cost = (Quantity, CostFunction);
+
+/// Declares limits: what they are of, the type and unit of their bounds `min` and `max`, and the limits that an entry stands for.
+macro_rules! limits {
+    ($($(#[$about:meta])* $name:ident { $($of_what:tt)* } within $bound:ty, $unit:literal => |$of:ident, $at:ident| $limits:expr;)*) => {$(
+        $crate::files::json::objects::read_objects! {
+            $(#[$about])*
+            pub struct $name {
+                $($of_what)*
+                #[doc = concat!("Lower bound", $unit, ".")]
+                pub min: Option<$bound>,
+                #[doc = concat!("Upper bound", $unit, ".")]
+                pub max: Option<$bound>,
+            }
+        }
+
+        impl LimitEntry for $name {
+            fn limits(&self, $at: &At<'_>) -> Result<Vec<Limit>> {
+                let $of = self;
+                Ok($limits)
+            }
+        }
+    )*};
+}
+pub(super) use limits;
+
+/// Declares costs: what they are of, what their `weight` is of, and the costs that an entry stands for.
+macro_rules! costs {
+    ($($(#[$about:meta])* $name:ident { $($of_what:tt)* } weight of $weight:literal => |$of:ident, $at:ident| $costs:expr;)*) => {$(
+        $crate::files::json::objects::read_objects! {
+            $(#[$about])*
+            pub struct $name {
+                $($of_what)*
+                #[doc = concat!("Weight of ", $weight, "; 1 where not written.")]
+                pub weight: Option<f64>,
+            }
+        }
+
+        impl CostEntry for $name {
+            fn costs(&self, $at: &At<'_>) -> Result<Vec<Cost>> {
+                let $of = self;
+                Ok($costs)
+            }
+        }
+    )*};
+}
+pub(super) use costs;
 
 /// A quantity of a recording by its name, which stands at `place`; the directions beside it stand at `at`.
 pub(super) struct Named<'a> {
@@ -141,10 +182,8 @@ read_objects! {
 impl PlaneSpec {
     /// The plane that it stands for.
     pub(super) fn plane(&self, at: &At<'_>) -> Result<Plane> {
-        let body = self.body.as_ref();
-        let body = body.map(|name| at.key("body").body(name)).transpose()?;
         Ok(Plane {
-            body,
+            body: at.optional("body", &self.body, |at, name| at.body(name))?,
             point: vector(&self.point),
             normal: unit_axis(&self.normal, &at.key("normal"))?,
         })

@@ -1,16 +1,15 @@
 //! Coordinates, rates, forces and torques of joints in limits, costs and recordings.
 
 use crate::control::problem::Limit;
-use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::{At, SiUnit};
 use crate::files::problem::quantities::entry::{
-    Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, limits_of, square,
+    Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, costs, limits, limits_of,
+    square,
 };
 use crate::files::problem::voltages::{SOLUTION_PATH, solution_document};
 use crate::files::scene::point::unit_axis;
-use crate::files::signal::signal;
-use crate::files::signal::spec::SignalSpec;
+use crate::files::signal::{SignalSpec, signal};
 use crate::files::units::quantity::{
     Force, JointCoordinate, JointRate, Kind, PhysicalQuantity, Quantity as Written, Torque,
 };
@@ -21,108 +20,113 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-read_objects! {
+limits! {
     /// Limits of a joint coordinate: `min`, `max` or both.
-    pub struct JointAngleLimitSpec {
+    JointAngleLimitSpec {
         /// Name of the joint.
         pub joint: String,
-        /// Lower bound, SI unit rad or m.
-        pub min: Option<Written<JointCoordinate>>,
-        /// Upper bound, SI unit rad or m.
-        pub max: Option<Written<JointCoordinate>>,
-    }
+    } within Written<JointCoordinate>, ", SI unit rad or m" => |of, at| {
+        let (what, bounds) = of_joint(&of.joint, [&of.min, &of.max], at)?;
+        vec![Limit::new(what, bounds)]
+    };
 
     /// Limits of the mean rate of a joint coordinate in each interval: `min`, `max` or both.
-    pub struct JointRateLimitSpec {
+    JointRateLimitSpec {
         /// Name of the joint.
         pub joint: String,
-        /// Lower bound, SI unit rad/s or m/s.
-        pub min: Option<Written<JointRate>>,
-        /// Upper bound, SI unit rad/s or m/s.
-        pub max: Option<Written<JointRate>>,
-    }
+    } within Written<JointRate>, ", SI unit rad/s or m/s" => |of, at| {
+        let (what, bounds) = of_joint(&of.joint, [&of.min, &of.max], at)?;
+        vec![Limit::of_rate(what, bounds)]
+    };
 
     /// Limits of the component, along a direction of the ground frame, of the force from the parent of a joint on its child: `min`, `max` or both.
     ///
     /// It is the force of the columns of reactions, at the instants between intervals. Joints in loops are refused.
-    pub struct ReactionForceLimitSpec {
+    ReactionForceLimitSpec {
         /// Name of the joint.
         pub joint: String,
         /// Direction of the ground frame, of any length.
         pub along: [f64; 3],
-        /// Lower bound, SI unit N.
-        pub min: Option<Written<Force>>,
-        /// Upper bound, SI unit N.
-        pub max: Option<Written<Force>>,
-    }
+    } within Written<Force>, ", SI unit N" => |of, at| {
+        let bounds = bounds([&of.min, &of.max], at)?;
+        let joint = transmitting(&of.joint, Reaction::Force, &at.key("joint"))?;
+        let along = unit_axis(&of.along, &at.key("along"))?;
+        limits_of([What::Reaction { joint, of: Reaction::Force, along }], bounds)
+    };
 
     /// Limits of the component, about a direction of the ground frame, of the torque from the parent of a joint on its child: `min`, `max` or both.
     ///
     /// It is the torque of the columns of reactions, about the point of the joint, at the instants between intervals. Spherical joints and joints in
     /// loops are refused.
-    pub struct ReactionTorqueLimitSpec {
+    ReactionTorqueLimitSpec {
         /// Name of the joint.
         pub joint: String,
         /// Direction of the ground frame, of any length.
         pub about: [f64; 3],
-        /// Lower bound, SI unit N m.
-        pub min: Option<Written<Torque>>,
-        /// Upper bound, SI unit N m.
-        pub max: Option<Written<Torque>>,
-    }
+    } within Written<Torque>, ", SI unit N m" => |of, at| {
+        let bounds = bounds([&of.min, &of.max], at)?;
+        let joint = transmitting(&of.joint, Reaction::Torque, &at.key("joint"))?;
+        let along = unit_axis(&of.about, &at.key("about"))?;
+        limits_of([What::Reaction { joint, of: Reaction::Torque, along }], bounds)
+    };
+}
 
+costs! {
     /// A joint and the function that its coordinate follows.
-    pub struct TrackJointSpec {
+    TrackJointSpec {
         /// Name of the joint, revolute or prismatic.
         pub joint: String,
         /// The function of time, SI unit rad or m.
         pub along: SignalSpec<JointCoordinate>,
-        /// Weight of ∫ (θ − r)² dt in rad² s, or mm² s of a prismatic joint; 1 where not written.
-        pub weight: Option<f64>,
-    }
+    } weight of "∫ (θ − r)² dt in rad² s, or mm² s of a prismatic joint" => |of, at| {
+        let joint = at.key("joint").coordinate(&of.joint)?;
+        let (kind, _) = at.unit_of(joint);
+        let reference = signal(&of.along, &kind, &at.key("along"))?;
+        vec![square(Quantity::joint(joint, 0.0), reference)]
+    };
 
     /// All joints along an earlier solution.
-    pub struct TrackJointsSpec {
+    TrackJointsSpec {
         /// Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder; linear between its instants, constant after
         /// the last.
         pub solution: String,
-        /// Weight of the sum over all joints of ∫ (θ − r)² dt in rad² s, or mm² s of prismatic joints; 1 where not written.
-        pub weight: Option<f64>,
-    }
+    } weight of "the sum over all joints of ∫ (θ − r)² dt in rad² s, or mm² s of prismatic joints" => |of, at| {
+        let place = at.key("solution");
+        let path = place.solution_file(&of.solution, SOLUTION_PATH)?;
+        let joints = read_solution_joints(&path, at.system)?;
+        refuse!(if joints.is_empty(), place;
+            found "a scene without a revolute or prismatic joint",
+            expected "joints that follow the solution");
+        let cost = |(joint, reference)| square(Quantity::joint(joint, 0.0), reference);
+        joints.into_iter().map(cost).collect()
+    };
 
     /// A joint and where it is to end.
-    pub struct FinalJointSpec {
+    FinalJointSpec {
         /// Name of the joint, revolute or prismatic.
         pub joint: String,
         /// The value, SI unit rad or m.
         pub at: Written<JointCoordinate>,
-        /// Weight of (θ − r)² at the final instant, in rad², or mm² of a prismatic joint; 1 where not written.
-        pub weight: Option<f64>,
-    }
+    } weight of "(θ − r)² at the final instant, in rad², or mm² of a prismatic joint" => |of, at| {
+        let joint = at.key("joint").coordinate(&of.joint)?;
+        let value = at.key("at").of_joint(joint, &of.at)?;
+        vec![square(Quantity::joint(joint, 0.0), value)]
+    };
 
     /// The mean rate of the coordinate of a joint in the intervals.
-    pub struct JointRateCostSpec {
+    JointRateCostSpec {
         /// Name of the joint, revolute or prismatic.
         pub joint: String,
         /// Rate that is asked for, SI unit rad/s or m/s; 0 where not written.
         pub at: Option<Written<JointRate>>,
-        /// Weight of the squared deviation in (rad/s)², or (m/s)² of a prismatic joint; 1 where not written.
-        pub weight: Option<f64>,
-    }
-}
-
-impl LimitEntry for JointAngleLimitSpec {
-    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
-        let (what, bounds) = of_joint(&self.joint, [&self.min, &self.max], at)?;
-        Ok(vec![Limit::new(what, bounds)])
-    }
-}
-
-impl LimitEntry for JointRateLimitSpec {
-    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
-        let (what, bounds) = of_joint(&self.joint, [&self.min, &self.max], at)?;
-        Ok(vec![Limit::of_rate(what, bounds)])
-    }
+    } weight of "the squared deviation in (rad/s)², or (m/s)² of a prismatic joint" => |of, at| {
+        let joint = at.key("joint").coordinate(&of.joint)?;
+        let rate = of.at.as_ref();
+        let rate = rate.map_or(Ok(0.0), |rate| at.key("at").of_joint(joint, rate))?;
+        let quantity = Quantity::joint_rate(joint);
+        let factor = quantity.rate_factor(at.system).unwrap_or(1.0);
+        vec![square(quantity, factor * rate)]
+    };
 }
 
 /// A joint, and the bounds of its coordinate or rate, of which one at least is written.
@@ -136,73 +140,12 @@ fn of_joint<M: PhysicalQuantity>(
     Ok((What::Joint { joint, near: 0.0 }, bounds))
 }
 
-impl LimitEntry for ReactionForceLimitSpec {
-    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
-        let bounds = bounds([&self.min, &self.max], at)?;
-        let joint = transmitting(&self.joint, Reaction::Force, &at.key("joint"))?;
-        let along = unit_axis(&self.along, &at.key("along"))?;
-        let of = Reaction::Force;
-        Ok(limits_of([What::Reaction { joint, of, along }], bounds))
-    }
-}
-
-impl LimitEntry for ReactionTorqueLimitSpec {
-    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
-        let bounds = bounds([&self.min, &self.max], at)?;
-        let joint = transmitting(&self.joint, Reaction::Torque, &at.key("joint"))?;
-        let along = unit_axis(&self.about, &at.key("about"))?;
-        let of = Reaction::Torque;
-        Ok(limits_of([What::Reaction { joint, of, along }], bounds))
-    }
-}
-
 /// A joint that transmits a force or torque.
 fn transmitting(name: &str, of: Reaction, at: &At<'_>) -> Result<usize> {
     let joint = at.joint(name)?;
     refuse!(if of == Reaction::Torque && !at.system.joints[joint].has_torque(), at;
         found format!("{name:?}, a spherical joint"), expected "a joint that transmits a torque");
     Ok(joint)
-}
-
-impl CostEntry for JointRateCostSpec {
-    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
-        let joint = at.key("joint").coordinate(&self.joint)?;
-        let rate = self.at.as_ref();
-        let rate = rate.map_or(Ok(0.0), |rate| at.key("at").of_joint(joint, rate))?;
-        let quantity = Quantity::joint_rate(joint);
-        let factor = quantity.rate_factor(at.system).unwrap_or(1.0);
-        Ok(vec![square(quantity, factor * rate)])
-    }
-}
-
-impl CostEntry for TrackJointSpec {
-    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
-        let joint = at.key("joint").coordinate(&self.joint)?;
-        let (kind, _) = at.unit_of(joint);
-        let reference = signal(&self.along, &kind, &at.key("along"))?;
-        Ok(vec![square(Quantity::joint(joint, 0.0), reference)])
-    }
-}
-
-impl CostEntry for TrackJointsSpec {
-    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
-        let place = at.key("solution");
-        let path = place.solution_file(&self.solution, SOLUTION_PATH)?;
-        let joints = read_solution_joints(&path, at.system)?;
-        refuse!(if joints.is_empty(), place;
-            found "a scene without a revolute or prismatic joint",
-            expected "joints that follow the solution");
-        let cost = |(joint, reference)| square(Quantity::joint(joint, 0.0), reference);
-        Ok(joints.into_iter().map(cost).collect())
-    }
-}
-
-impl CostEntry for FinalJointSpec {
-    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
-        let joint = at.key("joint").coordinate(&self.joint)?;
-        let value = at.key("at").of_joint(joint, &self.at)?;
-        Ok(vec![square(Quantity::joint(joint, 0.0), value)])
-    }
 }
 
 pub(super) fn coordinate(of: &Named<'_>) -> Result<Recorded> {
@@ -221,31 +164,29 @@ pub(super) fn rate(of: &Named<'_>) -> Result<Recorded> {
 }
 
 pub(super) fn reaction_force(of: &Named<'_>) -> Result<Recorded> {
-    let along = written_direction(of.along, &of.at.key("along"));
     let unit = (Force::kind(), ("N", 1.0));
-    reaction(of, Reaction::Force, along, unit)
+    reaction(of, Reaction::Force, of.along, unit)
 }
 
 pub(super) fn reaction_torque(of: &Named<'_>) -> Result<Recorded> {
-    let along = written_direction(of.about, &of.at.key("about"));
     let unit = (Torque::kind(), ("N m", 1e-3));
-    reaction(of, Reaction::Torque, along, unit)
+    reaction(of, Reaction::Torque, of.about, unit)
 }
 
 /// Force or torque that a joint transmits along a direction.
 fn reaction(
     named: &Named<'_>,
     of: Reaction,
-    along: Result<Vector>,
+    along: Option<[f64; 3]>,
     unit: (Kind, SiUnit),
 ) -> Result<Recorded> {
-    let joint = transmitting(named.name, of, named.place)?;
-    let along = along?;
-    let quantity = Quantity::jump(What::Reaction { joint, of, along }, 1.0, 1.0);
-    let word = match of {
-        Reaction::Force => "force",
-        Reaction::Torque => "torque",
+    let (word, key) = match of {
+        Reaction::Force => ("force", "along"),
+        Reaction::Torque => ("torque", "about"),
     };
+    let joint = transmitting(named.name, of, named.place)?;
+    let along = written_direction(along, &named.at.key(key))?;
+    let quantity = Quantity::jump(What::Reaction { joint, of, along }, 1.0, 1.0);
     Ok(named.recorded(word, quantity, unit))
 }
 

@@ -21,6 +21,7 @@ use crate::files::problem::quantities::source::{
     self, CurrentCostSpec, CurrentLimitSpec, PowerCostSpec, PowerLimitSpec, VoltageRateLimitSpec,
 };
 use crate::files::units::quantity::{MeasuredSize, Quantity as Written};
+use crate::model::What;
 
 /// Declares an entry that has exactly one of some keys, beside others, and what is seen of the one that is written.
 macro_rules! one_of {
@@ -265,21 +266,17 @@ pub(crate) fn limits(list: &[LimitSpec], at: &At<'_>) -> Result<Vec<Limit>> {
     for (index, spec) in list.iter().enumerate() {
         let at = at.index(index);
         let (entry, place) = spec.entry(&at)?;
-        let own = entry.limits(&place)?.into_iter();
-        let expected = match spec.part {
-            None => {
-                limits.extend(own);
-                continue;
-            }
-            Some(_) if entry.is_timeless() => "no part: constants are the same at all times",
-            Some(part) if part > 0.0 && part <= 1.0 => {
-                limits.extend(own.map(|limit| limit.at_part(part)));
-                continue;
-            }
-            Some(_) => "a part of the duration, above 0 and at most 1, the end",
+        let own = entry.limits(&place)?;
+        let Some(part) = spec.part else {
+            limits.extend(own);
+            continue;
         };
-        let found = spec.part.unwrap_or_default().to_string();
-        return Err(at.key("part").wrong(found, expected));
+        let is_timeless = |limit: &Limit| matches!(limit.what, What::Amount { .. });
+        refuse!(if own.iter().any(is_timeless), at.key("part");
+            found part, expected "no part: constants are the same at all times");
+        refuse!(if !(part > 0.0 && part <= 1.0), at.key("part");
+            found part, expected "a part of the duration, above 0 and at most 1, the end");
+        limits.extend(own.into_iter().map(|limit| limit.at_part(part)));
     }
     Ok(limits)
 }

@@ -5,23 +5,14 @@ use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::{At, ELECTRIC_KEYS};
 use crate::files::problem::quantities::entry::{
-    All, Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, limits_of, squares,
+    All, Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, costs, limits, limits_of,
+    squares,
 };
 use crate::files::units::quantity::{ElectricField, Force, Mass, Quantity as Written, Volume};
 use crate::model::system::Fidelity;
 use crate::model::{Amount, FieldPlace, Pulling, Quantity, What};
 
 read_objects! {
-    /// Limits of the stretch of a muscle: `min`, `max` or both.
-    pub struct StretchLimitSpec {
-        /// Name of the muscle.
-        pub muscle: String,
-        /// Lower bound.
-        pub min: Option<f64>,
-        /// Upper bound.
-        pub max: Option<f64>,
-    }
-
     /// Limits of the force with which one lumped muscle (`"muscle": name`), each (`"muscles": "all"`), a spring or a tendon pulls its ends
     /// together, by elasticity, field, viscosity and Maxwell branches: `min`, `max` or both.
     ///
@@ -63,66 +54,60 @@ read_objects! {
     }
 }
 
-/// Declares limits of an amount of lumped muscles, together: `min`, `max` or both.
-macro_rules! amount_limits {
-    ($($(#[$about:meta])* $name:ident: $measure:ident, $unit:literal;)*) => {
-        $(
-            read_objects! {
-                $(#[$about])*
-                pub struct $name {
-                    /// Names of lumped muscles; all of them where not written.
-                    pub muscles: Option<Vec<String>>,
-                    #[doc = concat!("Lower bound, SI unit ", $unit, ".")]
-                    pub min: Option<Written<$measure>>,
-                    #[doc = concat!("Upper bound, SI unit ", $unit, ".")]
-                    pub max: Option<Written<$measure>>,
-                }
-            }
+limits! {
+    /// Limits of the stretch of a muscle: `min`, `max` or both.
+    StretchLimitSpec {
+        /// Name of the muscle.
+        pub muscle: String,
+    } within f64, "" => |of, at| {
+        let muscle = at.key("muscle").muscle(&of.muscle)?;
+        let [min, max] = bounds_by([&of.min, &of.max], at, |at, &bound| match bound > 0.0 {
+            true => Ok(bound),
+            false => Err(at.wrong(bound.to_string(), "a positive stretch")),
+        })?;
+        limits_of([What::Stretch(muscle)], [min.max(0.0), max])
+    };
 
-            impl LimitEntry for $name {
-                fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
-                    let bounds = bounds([&self.min, &self.max], at)?;
-                    amount_limits(&self.muscles, Amount::$measure, bounds, at)
-                }
+    /// Limits of the volume of lumped muscles at rest, together, which follows from free parameters: `min`, `max` or both.
+    MuscleVolumeLimitSpec {
+        /// Names of lumped muscles; all of them where not written.
+        pub muscles: Option<Vec<String>>,
+    } within Written<Volume>, ", SI unit m^3" => |of, at| {
+        amount_limits(&of.muscles, Amount::Volume, bounds([&of.min, &of.max], at)?, at)?
+    };
 
-                fn is_timeless(&self) -> bool {
-                    true
-                }
-            }
-        )*
+    /// Limits of the mass of lumped muscles with a density, together, which follows from free parameters: `min`, `max` or both.
+    MuscleMassLimitSpec {
+        /// Names of lumped muscles; all of them where not written.
+        pub muscles: Option<Vec<String>>,
+    } within Written<Mass>, ", SI unit kg" => |of, at| {
+        amount_limits(&of.muscles, Amount::Mass, bounds([&of.min, &of.max], at)?, at)?
     };
 }
 
-amount_limits! {
-    /// Limits of the volume of lumped muscles at rest, together, which follows from free parameters: `min`, `max` or both.
-    MuscleVolumeLimitSpec: Volume, "m^3";
-    /// Limits of the mass of lumped muscles with a density, together, which follows from free parameters: `min`, `max` or both.
-    MuscleMassLimitSpec: Mass, "kg";
-}
-
-read_objects! {
+costs! {
     /// The tension of one lumped muscle (`"muscle": name`) or of each (`"muscles": "all"`), in the middle of the intervals.
-    pub struct TensionCostSpec {
+    TensionCostSpec {
         /// Name of the muscle.
         pub muscle: Option<String>,
         /// All lumped muscles.
         pub muscles: Option<All>,
         /// Tension that is asked for, SI unit N; 0 where not written.
         pub at: Option<Written<Force>>,
-        /// Weight of the squared deviation in N²; 1 where not written.
-        pub weight: Option<f64>,
-    }
+    } weight of "the squared deviation in N²" => |of, at| {
+        let muscles = lumped_muscles(&of.muscle, of.muscles, at)?;
+        let tension = |muscle| Quantity::tension(Pulling::Muscle(muscle));
+        squares(muscles, tension, of.at.as_ref().map(Written::value))
+    };
 
     /// The true electric field of one lumped muscle (`"muscle": name`) or of each (`"muscles": "all"`), in the middle of the intervals; behind a
     /// resistor at the instants.
-    pub struct FieldCostSpec {
+    FieldCostSpec {
         /// Name of the muscle.
         pub muscle: Option<String>,
         /// All lumped muscles with an electric term.
         pub muscles: Option<All>,
-        /// Weight of the squared field in (V/µm)²; 1 where not written.
-        pub weight: Option<f64>,
-    }
+    } weight of "the squared field in (V/µm)²" => |of, at| field_costs(of, at)?;
 }
 
 const EXPECTED: &str = "a lumped muscle";
@@ -159,17 +144,6 @@ fn lumped_muscles(
     Ok(muscles)
 }
 
-impl LimitEntry for StretchLimitSpec {
-    fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
-        let muscle = at.key("muscle").muscle(&self.muscle)?;
-        let [min, max] = bounds_by([&self.min, &self.max], at, |at, &bound| match bound > 0.0 {
-            true => Ok(bound),
-            false => Err(at.wrong(bound.to_string(), "a positive stretch")),
-        })?;
-        Ok(limits_of([What::Stretch(muscle)], [min.max(0.0), max]))
-    }
-}
-
 impl LimitEntry for TensionLimitSpec {
     fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
         let bounds = bounds([&self.min, &self.max], at)?;
@@ -192,6 +166,9 @@ impl LimitEntry for TensionLimitSpec {
     }
 }
 
+/// What is found of a muscle without a field.
+const NO_ELECTRIC_TERM: &str = "whose material has no electric term";
+
 /// Error text of a field limit without a part.
 const NOTHING: &str = "nothing that a field reaches";
 
@@ -212,10 +189,10 @@ impl LimitEntry for ElectricFieldLimitSpec {
             (_, Some(name)) => {
                 let block = place.solid(name)?;
                 let regions = &at.system.solids[block].mesh.region_names;
-                let of = at.key("region");
-                let region = self.region.as_ref();
-                let region = region.map(|name| of.find(name, regions, "the name of a region"));
-                block_fields(vec![block], region.transpose()?, &place)?
+                let region = at.optional("region", &self.region, |at, name| {
+                    at.find(name, regions, "the name of a region")
+                });
+                block_fields(vec![block], region?, &place)?
             }
             (_, None) => block_fields((0..at.system.solids.len()).collect(), None, &place)?,
         };
@@ -249,7 +226,7 @@ fn muscle_fields(name: Option<&String>, at: &At<'_>) -> Result<Vec<FieldPlace>> 
         Some(name) => {
             let muscle = at.muscle(name)?;
             refuse!(if !has_field(&muscle), at;
-                found format!("{name:?}, whose material has no electric term"),
+                found format!("{name:?}, {NO_ELECTRIC_TERM}"),
                 expected format!("a muscle of {ELECTRIC_KEYS}"));
             vec![muscle]
         }
@@ -273,41 +250,23 @@ fn muscle_fields(name: Option<&String>, at: &At<'_>) -> Result<Vec<FieldPlace>> 
     Ok(muscles.into_iter().map(place).collect())
 }
 
-impl CostEntry for TensionCostSpec {
-    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
-        let muscles = lumped_muscles(&self.muscle, self.muscles, at)?;
-        let tension = |muscle| Quantity::tension(Pulling::Muscle(muscle));
-        Ok(squares(
-            muscles,
-            tension,
-            self.at.as_ref().map(Written::value),
-        ))
-    }
-}
-
-impl CostEntry for FieldCostSpec {
-    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
-        let of_system = &at.system.muscles;
-        let mut muscles = lumped_muscles(&self.muscle, self.muscles, at)?;
-        muscles.retain(|&muscle| of_system[muscle].material.electric.is_some());
-        if muscles.is_empty() {
-            let (key, found) = match &self.muscle {
-                Some(name) => (
-                    "muscle",
-                    format!("{name:?}, whose material has no electric term"),
-                ),
-                None => ("muscles", NOTHING.to_owned()),
-            };
-            let expected = format!("a muscle of {ELECTRIC_KEYS}");
-            return Err(at.key(key).wrong(found, expected));
-        }
-        let cost = |muscle: usize| {
-            let is_behind = of_system[muscle].is_behind_resistor();
-            let field = Quantity::squared_field(muscle, is_behind);
-            (field, CostFunction::Itself)
-        };
-        Ok(muscles.into_iter().map(cost).collect())
-    }
+/// The squared fields of muscles with an electric term.
+fn field_costs(of: &FieldCostSpec, at: &At<'_>) -> Result<Vec<Cost>> {
+    let of_system = &at.system.muscles;
+    let mut muscles = lumped_muscles(&of.muscle, of.muscles, at)?;
+    muscles.retain(|&muscle| of_system[muscle].material.electric.is_some());
+    let (key, found) = match &of.muscle {
+        Some(name) => ("muscle", format!("{name:?}, {NO_ELECTRIC_TERM}")),
+        None => ("muscles", NOTHING.to_owned()),
+    };
+    refuse!(if muscles.is_empty(), at.key(key);
+        found found, expected format!("a muscle of {ELECTRIC_KEYS}"));
+    let cost = |muscle: usize| {
+        let is_behind = of_system[muscle].is_behind_resistor();
+        let field = Quantity::squared_field(muscle, is_behind);
+        (field, CostFunction::Itself)
+    };
+    Ok(muscles.into_iter().map(cost).collect())
 }
 
 /// Force with which a muscle, a spring or a tendon pulls its ends together.
@@ -330,9 +289,8 @@ pub(super) fn tension(of: &Named<'_>) -> Result<Recorded> {
     let parts: Vec<_> = muscles.chain(springs).chain(tendons).collect();
     let names: Vec<String> = parts.iter().map(|(name, ..)| (*name).clone()).collect();
     let (_, part, without) = parts[of.place.find(name, &names, EXPECTED)?];
-    if let Some(without) = without {
-        return Err(of.place.wrong(format!("{name:?}, {without}"), EXPECTED));
-    }
+    refuse!(if let Some(without) = without, of.place;
+        found format!("{name:?}, {without}"), expected EXPECTED);
     let unit = (Force::kind(), ("N", 1.0));
     Ok(of.recorded("tension", Quantity::tension(part), unit))
 }
@@ -384,14 +342,11 @@ fn has(amount: Amount, muscle: usize, at: &At<'_>) -> bool {
 /// All lumped muscles, of which one at least has the amount.
 fn all_with(amount: Amount, at: &At<'_>) -> Result<Vec<usize>> {
     let muscles = lumped(at);
-    match muscles.iter().any(|&m| has(amount, m, at)) {
-        true => Ok(muscles),
-        false if muscles.is_empty() => Err(at.wrong("no lumped muscle", EXPECTED)),
-        false => Err(at.wrong(
-            "muscles without a density",
-            "a \"density\" of the material of a lumped muscle",
-        )),
-    }
+    refuse!(if muscles.is_empty(), at; found "no lumped muscle", expected EXPECTED);
+    refuse!(if !muscles.iter().any(|&m| has(amount, m, at)), at;
+        found "muscles without a density",
+        expected "a \"density\" of the material of a lumped muscle");
+    Ok(muscles)
 }
 
 /// Lumped muscles by their names.

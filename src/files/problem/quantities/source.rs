@@ -1,11 +1,10 @@
 //! Voltages, charges, currents and powers of sources in limits, costs and recordings.
 
 use crate::control::problem::Limit;
-use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, refuse};
 use crate::files::problem::at::{At, SiUnit};
 use crate::files::problem::quantities::entry::{
-    All, Cost, CostEntry, LimitEntry, Named, Recorded, bounds, squares,
+    All, Cost, CostEntry, LimitEntry, Named, Recorded, bounds, costs, limits, squares,
 };
 use crate::files::units::quantity::{
     Charge, Current, Kind, Power, Quantity as Written, Voltage, VoltageRate,
@@ -15,32 +14,19 @@ use crate::model::{MILLIAMPERE, Quantity, What};
 
 /// Declares limits of one source (`"source": name`) or all (`"sources": "all"`): `min`, `max` or both.
 macro_rules! source_limits {
-    ($($(#[$about:meta])* $name:ident: $measure:ident, $unit:literal, $chosen:ident, $limit:expr;)*) => {
-        $(
-            read_objects! {
-                $(#[$about])*
-                pub struct $name {
-                    /// Name of the source: that of its muscle or electrode.
-                    pub source: Option<String>,
-                    /// All sources.
-                    pub sources: Option<All>,
-                    #[doc = concat!("Lower bound, SI unit ", $unit, ".")]
-                    pub min: Option<Written<$measure>>,
-                    #[doc = concat!("Upper bound, SI unit ", $unit, ".")]
-                    pub max: Option<Written<$measure>>,
-                }
-            }
-
-            impl LimitEntry for $name {
-                fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
-                    let bounds = bounds([&self.min, &self.max], at)?;
-                    let limit: fn(usize, [f64; 2]) -> Limit = $limit;
-                    let (sources, _) = $chosen(&self.source, self.sources, at)?;
-                    Ok(sources.into_iter().map(|source| limit(source, bounds)).collect())
-                }
-            }
-        )*
-    };
+    ($($(#[$about:meta])* $name:ident: $measure:ident, $unit:literal, $chosen:ident, $limit:expr;)*) => { limits! {
+        $($(#[$about])* $name {
+            /// Name of the source: that of its muscle or electrode.
+            pub source: Option<String>,
+            /// All sources.
+            pub sources: Option<All>,
+        } within Written<$measure>, $unit => |of, at| {
+            let bounds = bounds([&of.min, &of.max], at)?;
+            let limit: fn(usize, [f64; 2]) -> Limit = $limit;
+            let (sources, _) = $chosen(&of.source, of.sources, at)?;
+            sources.into_iter().map(|source| limit(source, bounds)).collect()
+        };)*
+    } };
 }
 
 source_limits! {
@@ -48,42 +34,45 @@ source_limits! {
     ///
     /// Behind a resistor it is the mean current in each interval. Otherwise it is the charge that flows from the middle of an interval to that
     /// of the next one, where the voltage jumps too; from and to states of rest that are known it is that of half an interval.
-    CurrentLimitSpec: Current, "A", measured, |source, bounds| Limit::new(What::Current(source), bounds);
+    CurrentLimitSpec: Current, ", SI unit A", measured, |source, bounds| Limit::new(What::Current(source), bounds);
     /// Limits of the power of one source (`"source": name`) or each (`"sources": "all"`) of lumped muscles: `min`, `max` or both, at the
     /// times of a current.
     ///
     /// Without a resistor it is that of the stored energy and of the work on the motion, as in the table; losses of charging in steps do not
     /// count.
-    PowerLimitSpec: Power, "W", measured, |source, bounds| Limit::new(What::Power(source), bounds);
+    PowerLimitSpec: Power, ", SI unit W", measured, |source, bounds| Limit::new(What::Power(source), bounds);
     /// Limits of the rate of the voltage of one source (`"source": name`) or each (`"sources": "all"`) from interval to interval: `min`,
     /// `max` or both.
-    VoltageRateLimitSpec: VoltageRate, "V/s", any, |source, bounds| Limit::of_rate(What::Voltage(source), bounds);
+    VoltageRateLimitSpec: VoltageRate, ", SI unit V/s", any, |source, bounds| Limit::of_rate(What::Voltage(source), bounds);
 }
 
-read_objects! {
+costs! {
     /// The current of one source (`"source": name`) or of each (`"sources": "all"`) of lumped muscles behind a resistor.
-    pub struct CurrentCostSpec {
+    CurrentCostSpec {
         /// Name of the source: that of its muscle.
         pub source: Option<String>,
         /// All sources.
         pub sources: Option<All>,
         /// Current that is asked for, SI unit A; 0 where not written.
         pub at: Option<Written<Current>>,
-        /// Weight of the squared deviation in mA²; 1 where not written.
-        pub weight: Option<f64>,
-    }
+    } weight of "the squared deviation in mA²" => |of, at| {
+        let current = of.at.as_ref().map(|one| one.value() / MILLIAMPERE);
+        let muscles = behind_resistors(&of.source, of.sources, at)?;
+        squares(muscles, Quantity::current, current)
+    };
 
     /// The power of one source (`"source": name`) or of each (`"sources": "all"`) of lumped muscles behind a resistor.
-    pub struct PowerCostSpec {
+    PowerCostSpec {
         /// Name of the source: that of its muscle.
         pub source: Option<String>,
         /// All sources.
         pub sources: Option<All>,
         /// Power that is asked for, SI unit W; 0 where not written.
         pub at: Option<Written<Power>>,
-        /// Weight of the squared deviation in W²; 1 where not written.
-        pub weight: Option<f64>,
-    }
+    } weight of "the squared deviation in W²" => |of, at| {
+        let muscles = behind_resistors(&of.source, of.sources, at)?;
+        squares(muscles, Quantity::power, of.at.as_ref().map(Written::value))
+    };
 }
 
 /// One source, or all that take a voltage, with the place where they are chosen.
@@ -123,10 +112,9 @@ fn measured<'s>(
         Some(_) => Some("a muscle of finite elements"),
         None => Some("which drives finite elements"),
     };
-    if let Some((source, why)) = chosen.iter().find_map(|&s| Some((s, obstacle(s)?))) {
-        let found = format!("{:?}, {why}", at.sources[source].name);
-        return Err(place.wrong(found, EXPECTED));
-    }
+    let obstacle = chosen.iter().find_map(|&s| Some((s, obstacle(s)?)));
+    refuse!(if let Some((source, why)) = obstacle, place;
+        found format!("{:?}, {why}", at.sources[source].name), expected EXPECTED);
     refuse!(if chosen.is_empty(), place; found "no source", expected EXPECTED);
     Ok((chosen, place))
 }
@@ -136,32 +124,10 @@ fn behind_resistors(one: &Option<String>, all: Option<All>, at: &At<'_>) -> Resu
     let (muscles, place) = measured(one, all, at)?;
     let of_system = &at.system.muscles;
     let jumps = |&&muscle: &&usize| !Muscle::is_behind_resistor(&of_system[muscle]);
-    match muscles.iter().find(jumps) {
-        None => Ok(muscles),
-        Some(&muscle) => {
-            let name = &of_system[muscle].name;
-            let found =
-                format!("{name:?}, without a resistor: its voltage jumps between intervals");
-            let expected = "a muscle with a \"resistance\" in its \"circuit\"; otherwise \"rate\", \"electrical_energy\" or a limit";
-            Err(place.wrong(found, expected))
-        }
-    }
-}
-
-impl CostEntry for CurrentCostSpec {
-    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
-        let current = self.at.as_ref().map(|one| one.value() / MILLIAMPERE);
-        let muscles = behind_resistors(&self.source, self.sources, at)?;
-        Ok(squares(muscles, Quantity::current, current))
-    }
-}
-
-impl CostEntry for PowerCostSpec {
-    fn costs(&self, at: &At<'_>) -> Result<Vec<Cost>> {
-        let power = self.at.as_ref().map(Written::value);
-        let muscles = behind_resistors(&self.source, self.sources, at)?;
-        Ok(squares(muscles, Quantity::power, power))
-    }
+    refuse!(if let Some(&muscle) = muscles.iter().find(jumps), place;
+        found format!("{:?}, without a resistor: its voltage jumps between intervals", of_system[muscle].name),
+        expected "a muscle with a \"resistance\" in its \"circuit\"; otherwise \"rate\", \"electrical_energy\" or a limit");
+    Ok(muscles)
 }
 
 /// A source, whether it charges a lumped muscle, and whether a resistor lies between.

@@ -53,12 +53,16 @@ objects! {
     }
 }
 
+/// The parts of a scene on which loads act.
+pub(crate) struct Carriers<'a> {
+    pub(crate) bodies: &'a [String],
+    pub(crate) joints: &'a [Joint],
+    pub(crate) muscles: &'a [Muscle],
+    pub(crate) solids: &'a [Solid],
+}
+
 /// The load that is written.
-pub(crate) fn load(
-    spec: &LoadSpec,
-    (bodies, joints, muscles, solids): (&[String], &[Joint], &[Muscle], &[Solid]),
-    scope: &Scope<'_>,
-) -> Result<Load> {
+pub(crate) fn load(spec: &LoadSpec, on: &Carriers<'_>, scope: &Scope<'_>) -> Result<Load> {
     let no_direction = match (&spec.joint, &spec.muscle) {
         (Some(_), _) => Some("as the axis of the joint is the direction"),
         (None, Some(_)) => Some("as a charge has no direction"),
@@ -69,26 +73,26 @@ pub(crate) fn load(
         "point" point |at, point| {
             checked?;
             LoadPlace::Point {
-                at: point.attachment(bodies, at)?,
+                at: point.attachment(on.bodies, at)?,
                 direction: spec.direction(scope)?,
                 follows: spec.follows.unwrap_or(false),
             }
         };
         "joint" joint |at, name| {
             checked?;
-            let all = names(joints, |joint| &joint.name);
+            let all = names(on.joints, |joint| &joint.name);
             LoadPlace::Joint(at.find(name, &all, "the name of a joint")?)
         };
         "muscle" muscle |at, name| {
             checked?;
-            let all = names(muscles, |muscle| &muscle.name);
+            let all = names(on.muscles, |muscle| &muscle.name);
             LoadPlace::Muscle(at.find(name, &all, "the name of a muscle")?)
         };
         "solid" solid |at, name| {
             checked?;
-            let all = names(solids, |solid| &solid.name);
+            let all = names(on.solids, |solid| &solid.name);
             let block = at.find(name, &all, "the name of an elastic block")?;
-            let load = spec.of_solid(&solids[block], scope)?;
+            let load = spec.of_solid(&on.solids[block], scope)?;
             LoadPlace::Block { block, load }
         };
     );
@@ -159,15 +163,9 @@ impl LoadSpec {
 
     /// Faces of the surface all of whose nodes lie in the place that is written; a force on them moves a node.
     fn faces(&self, solid: &Solid, scope: &Scope<'_>) -> Result<Faces> {
-        let place = (
-            self.face.as_ref(),
-            self.plane.as_ref(),
-            self.cuboid.as_ref(),
-        );
         let owner = format!("load {:?}", self.name);
-        let faces = solid
-            .mesh
-            .faces_of(&nodes(&owner, place, &solid.mesh, scope)?);
+        let nodes = nodes!(&owner, self, &solid.mesh, scope);
+        let faces = solid.mesh.faces_of(&nodes);
         refuse!(if faces.is_empty(), scope;
             found format!("{owner} where no face of an element lies on the surface"),
             expected "a part of the surface of the block");

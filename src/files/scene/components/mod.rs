@@ -5,7 +5,7 @@ pub(super) mod spring;
 mod tendon;
 
 pub use load::LoadSpec;
-pub(crate) use load::load;
+pub(crate) use load::{Carriers, load};
 pub use spring::SpringSpec;
 pub use tendon::TendonSpec;
 
