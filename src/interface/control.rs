@@ -70,19 +70,6 @@ impl Control {
         free
     }
 
-    /// Seeks a load within bounds in N, or N mm of a torque; loads that are neither sought nor given are zero.
-    pub fn load_within(mut self, load: Handle<Load>, range: RangeInclusive<f64>) -> Self {
-        let bounds = [*range.start(), *range.end()];
-        self.load_bounds.push((load, bounds));
-        self
-    }
-
-    /// A load that is given: a constant in N, or N mm of a torque, or a [`Signal`] whose value in the middle of each interval acts during
-    /// the interval.
-    pub fn load(self, load: Handle<Load>, size: impl Into<Signal>) -> Self {
-        self.voltage(load, size)
-    }
-
     /// Solves; an optimum that a simulation under its voltages does not reproduce is solved again on finer grids.
     ///
     /// # Errors
@@ -218,6 +205,11 @@ impl Control {
 
 builder! {
     impl Control;
+    /// Seeks a load within bounds in N, or N mm of a torque; loads that are neither sought nor given are zero.
+    load_within(load: Handle<Load>, range: RangeInclusive<f64>) |of| of.load_bounds.push((load, range.into_inner().into()));
+    /// A load that is given: a constant in N, or N mm of a torque, or a [`Signal`] whose value in the middle of each interval acts during
+    /// the interval.
+    load(load: Handle<Load>, size: impl Into<Signal>) |of| of.voltages.push((load.into(), size.into()));
     /// Another start.
     start(start: State) |of| of.start = start;
     /// The goal, at rest unless it is [`State::Free`] or [`State::Periodic`].

@@ -262,19 +262,17 @@ impl Control {
         self.task.limits.extend(muscles.iter().map(limit));
         self
     }
+}
 
+builder! {
+    impl Control;
     /// Makes the limit that was added last hold only at a part of the duration, above 0 and at most 1, the end: at the instant nearest to it, or in
     /// the interval before that instant. Nothing without a limit.
-    pub fn only_at(mut self, part: f64) -> Self {
-        if let Some(last) = self.task.limits.pop() {
-            self.task.limits.push(last.at_part(part));
+    only_at(part: f64) |of| {
+        if let Some(last) = of.task.limits.pop() {
+            of.task.limits.push(last.at_part(part));
         }
-        self
-    }
-
+    };
     /// Adds a limit of any quantity, such as the clearance of a marker from a plane.
-    pub fn limited(mut self, limit: Limit) -> Self {
-        self.task.limits.push(limit);
-        self
-    }
+    limited(limit: Limit) |of| of.task.limits.push(limit);
 }

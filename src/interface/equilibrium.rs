@@ -24,11 +24,6 @@ impl Equilibrium {
         Self::default()
     }
 
-    /// The size of a load in N, or N mm of a torque.
-    pub fn load(self, load: Handle<Load>, size: f64) -> Self {
-        self.voltage(load, size)
-    }
-
     /// Finds it, as a motion of one instant.
     ///
     /// # Errors
@@ -77,6 +72,8 @@ impl Equilibrium {
 
 builder! {
     impl Equilibrium;
+    /// The size of a load in N, or N mm of a torque.
+    load(load: Handle<Load>, size: f64) |of| of.inputs.push((load.into(), size));
     /// The voltage of a muscle or electrode in V.
     voltage(input: impl Into<Input>, volts: f64) |of| of.inputs.push((input.into(), volts));
     /// The state right after the voltages and loads came to act: Maxwell branches are springs without stress in the reference

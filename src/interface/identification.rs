@@ -68,11 +68,6 @@ impl Recording {
         }
     }
 
-    /// The size of a load in N, or N mm of a torque: a constant or a [`Signal`].
-    pub fn load(self, load: Handle<Load>, size: impl Into<Signal>) -> Self {
-        self.voltage(load, size)
-    }
-
     /// Readings of a coordinate of a joint in rad or mm at times in ms, with their standard deviation; `None`: the residuals tell it.
     pub fn joint(
         self,
@@ -175,6 +170,8 @@ impl Recording {
 
 builder! {
     impl Recording;
+    /// The size of a load in N, or N mm of a torque: a constant or a [`Signal`].
+    load(load: Handle<Load>, size: impl Into<Signal>) |of| of.inputs.push((load.into(), size.into()));
     /// Time in ms of the readings at which the motion begins, 0 where it is not said; readings that begin late need it.
     time_offset(time: f64) |of| of.time_offset = Some(time);
     /// Another system than that of the identification, with the same parts and more, such as a payload.

@@ -71,16 +71,6 @@ impl Body {
         Self::from_shape(Shape::Sphere { radius })
     }
 
-    /// Mass in g; the moments of inertia follow from the shape.
-    pub fn mass(self, mass: f64) -> Self {
-        let inertia = self.shape.inertia(mass);
-        Self {
-            mass,
-            inertia,
-            ..self
-        }
-    }
-
     /// Density in g/mm³, which gives the mass; a body without a volume keeps its mass.
     pub fn density(self, density: f64) -> Self {
         match self.shape.volume() {
@@ -92,6 +82,8 @@ impl Body {
 
 builder! {
     impl Body;
+    /// Mass in g; the moments of inertia follow from the shape.
+    mass(mass: f64) |of| (of.mass, of.inertia) = (mass, of.shape.inertia(mass));
     /// Principal moments of inertia in g mm² in place of those of its shape.
     inertia(inertia: [f64; 3]) |of| of.inertia = inertia;
     /// Centre of mass in mm.
@@ -174,70 +166,35 @@ impl JointKind {
 impl Muscle {
     /// A stack of a material, which still needs its ends, its section and its layers.
     pub fn of(material: &Material) -> Self {
-        let nowhere = attachment(super::GROUND, Vector3::zeros());
         Self {
-            name: String::new(),
-            from: nowhere,
-            to: nowhere,
-            cross_section: [0.0; 2],
-            layer_thickness: 0.0,
             material: *material,
-            prestretch: None,
-            section_inertia: false,
-            circuit: None,
-            fidelity: Fidelity::Lumped,
+            ..Self::default()
         }
-    }
-
-    /// A resistance in Ω between its source and its electrodes.
-    pub fn resistance(self, resistance: f64) -> Self {
-        let circuit = self.circuit.unwrap_or_default();
-        self.behind(Circuit {
-            resistance: Some(resistance),
-            ..circuit
-        })
-    }
-
-    /// A leak of a resistance in Ω parallel to its electrodes.
-    pub fn leakage(self, leakage: f64) -> Self {
-        let circuit = self.circuit.unwrap_or_default();
-        self.behind(Circuit {
-            leakage: Some(leakage),
-            ..circuit
-        })
-    }
-
-    fn behind(self, circuit: Circuit) -> Self {
-        let circuit = Some(circuit);
-        Self { circuit, ..self }
-    }
-
-    /// Trilinear hexahedra in place of one stretch: elements across both sides and along the span, each along the span a layer of
-    /// the model. The material needs its Poisson ratio.
-    pub fn finite_elements(self, elements: [usize; 3]) -> Self {
-        let discretisation = Discretisation {
-            elements,
-            layers: elements[2],
-            element: ElementKind::Hex8,
-            first_side: None,
-        };
-        Self {
-            fidelity: Fidelity::FiniteElements(discretisation),
-            ..self
-        }
-    }
-
-    /// Direction of the first side of the cross-section in the ground frame, of finite elements; a lumped muscle has none.
-    pub fn first_side(mut self, direction: Vector3<f64>) -> Self {
-        if let Fidelity::FiniteElements(discretisation) = &mut self.fidelity {
-            discretisation.first_side = Some(direction);
-        }
-        self
     }
 }
 
 builder! {
     impl Muscle;
+    /// A resistance in Ω between its source and its electrodes.
+    resistance(resistance: f64) |of| of.circuit.get_or_insert_default().resistance = Some(resistance);
+    /// A leak of a resistance in Ω parallel to its electrodes.
+    leakage(leakage: f64) |of| of.circuit.get_or_insert_default().leakage = Some(leakage);
+    /// Trilinear hexahedra in place of one stretch: elements across both sides and along the span, each along the span a layer of
+    /// the model. The material needs its Poisson ratio.
+    finite_elements(elements: [usize; 3]) |of| {
+        of.fidelity = Fidelity::FiniteElements(Discretisation {
+            elements,
+            layers: elements[2],
+            element: ElementKind::Hex8,
+            first_side: None,
+        });
+    };
+    /// Direction of the first side of the cross-section in the ground frame, of finite elements; a lumped muscle has none.
+    first_side(direction: Vector3<f64>) |of| {
+        if let Fidelity::FiniteElements(discretisation) = &mut of.fidelity {
+            discretisation.first_side = Some(direction);
+        }
+    };
     /// Sets its start: a body or the ground, and a place in mm.
     from(carrier: impl Into<Carrier>, at: Vector3<f64>) |of| of.from = attachment(carrier, at);
     /// Sets its end.
@@ -273,15 +230,9 @@ impl Solid {
     /// A solid of one material on a mesh.
     pub fn on(mesh: Mesh, material: &Material) -> Self {
         Self {
-            name: String::new(),
             materials: vec![*material; mesh.region_names.len()],
             mesh,
-            element: ElementKind::Hex8,
-            electrodes: Vec::new(),
-            supports: Vec::new(),
-            glued: Vec::new(),
-            velocities: Vec::new(),
-            prestretch: None,
+            ..Self::default()
         }
     }
 
@@ -289,36 +240,36 @@ impl Solid {
     pub(super) fn nodes(&self, set: &str) -> Vec<usize> {
         self.mesh.sets.get(set).cloned().unwrap_or_default()
     }
+}
 
+builder! {
+    impl Solid;
     /// Stretches along x, y, z before it was glued and held, by which the mesh differs from the solid without stress.
-    pub fn prestretch(self, stretches: [f64; 3]) -> Self {
-        let prestretch = Some(Matrix::from_diagonal(&stretches.into()));
-        Self { prestretch, ..self }
-    }
-
+    prestretch(stretches: [f64; 3]) |of| of.prestretch = Some(Matrix::from_diagonal(&stretches.into()));
     /// Holds the nodes of a set of the mesh, such as `z_min`.
-    pub fn clamped(mut self, set: &str) -> Self {
-        let nodes = self.nodes(set);
-        self.supports.push(Support {
-            nodes,
-            held: [true; 3],
-        });
-        self
-    }
+    clamped(set: &str) |of| {
+        let nodes = of.nodes(set);
+        of.supports.push(Support { nodes, held: [true; 3] });
+    };
+    /// An electrode on the nodes of a set of the mesh.
+    electrode(name: &str, set: &str, potential: Potential) |of| {
+        let (name, nodes) = (name.to_owned(), of.nodes(set));
+        of.electrodes.push(Electrode { name, nodes, potential, circuit: None });
+    };
+    /// Puts a circuit between the electrode that was added last and its source. Nothing without an electrode.
+    behind(circuit: Circuit) |of| {
+        if let Some(last) = of.electrodes.last_mut() {
+            last.circuit = Some(circuit);
+        }
+    };
 }
 
 impl Material {
     /// A neo-Hookean elastomer with a shear modulus in MPa, without density, permittivity or viscosity so far.
     pub fn elastomer(shear_modulus: f64) -> Self {
         Self {
-            density: None,
             shear_modulus,
-            law: None,
-            lame_lambda: None,
-            electric: None,
-            viscosity: None,
-            maxwell: MaxwellBranches::default(),
-            stretch_range: None,
+            ..Self::default()
         }
     }
 
@@ -335,19 +286,12 @@ impl Material {
         let maxwell = MaxwellBranches::new(&branches).expect("five branches at most");
         Self { maxwell, ..self }
     }
-
-    /// Poisson ratio, which finite elements need: λ = 2 μ ν/(1 − 2 ν).
-    pub fn poisson_ratio(self, ratio: f64) -> Self {
-        let lame_lambda = Some(Self::first_lame_constant(self.shear_modulus, ratio));
-        Self {
-            lame_lambda,
-            ..self
-        }
-    }
 }
 
 builder! {
     impl Material;
+    /// Poisson ratio, which finite elements need: λ = 2 μ ν/(1 − 2 ν).
+    poisson_ratio(ratio: f64) |of| of.lame_lambda = Some(Self::first_lame_constant(of.shear_modulus, ratio));
     /// Law of elasticity in place of the neo-Hookean one, with the same shear modulus at small strains.
     law(law: ElasticLaw) |of| of.law = Some(law);
     /// Smallest and largest stretch for which the constants hold: a lumped muscle beyond them is a warning.
@@ -361,27 +305,6 @@ builder! {
     ideal_dielectric(ratio: f64) |of| of.electric = Some(ElectricConstants::ideal(ratio));
     /// Viscosity in MPa ms.
     viscosity(viscosity: f64) |of| of.viscosity = Some(viscosity);
-}
-
-impl Solid {
-    /// An electrode on the nodes of a set of the mesh.
-    pub fn electrode(mut self, name: &str, set: &str, potential: Potential) -> Self {
-        self.electrodes.push(Electrode {
-            name: name.to_owned(),
-            nodes: self.nodes(set),
-            potential,
-            circuit: None,
-        });
-        self
-    }
-
-    /// Puts a circuit between the electrode that was added last and its source. Nothing without an electrode.
-    pub fn behind(mut self, circuit: Circuit) -> Self {
-        if let Some(last) = self.electrodes.last_mut() {
-            last.circuit = Some(circuit);
-        }
-        self
-    }
 }
 
 impl Potential {

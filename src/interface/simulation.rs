@@ -40,12 +40,6 @@ impl Simulation {
         }
     }
 
-    /// The size of a load in N, or N mm of a torque: a constant or a [`Signal`], whose value in the middle of each step acts during the
-    /// step.
-    pub fn load(self, load: Handle<Load>, size: impl Into<Signal>) -> Self {
-        self.voltage(load, size)
-    }
-
     /// Simulates.
     ///
     /// # Errors
@@ -119,6 +113,9 @@ impl Simulation {
 
 builder! {
     impl Simulation;
+    /// The size of a load in N, or N mm of a torque: a constant or a [`Signal`], whose value in the middle of each step acts during the
+    /// step.
+    load(load: Handle<Load>, size: impl Into<Signal>) |of| of.voltages.push((load.into(), size.into()));
     /// Equal steps in ms.
     step(step: f64) |of| of.step = Some(step);
     /// Another start.

@@ -86,12 +86,7 @@ impl State {
                 }
                 let places = markers.iter().map(|&(m, place)| (m.index(), Place(place)));
                 let turned = bodies.iter().map(|&(b, turned)| (b.index(), turned));
-                BoundaryState::Markers {
-                    places: places.collect(),
-                    orientations: turned.collect(),
-                    rest: Rest::Everything,
-                    hold: None,
-                }
+                at_places(places.collect(), turned.collect())
             }
             Self::Markers(places) => {
                 for (marker, place) in places {
@@ -100,16 +95,22 @@ impl State {
                         found("{:?} of marker {}", place.as_slice(), marker.index()),
                         expected "a finite place of a marker");
                 }
-                let places = places
-                    .iter()
-                    .map(|&(marker, place)| (marker.index(), place.into()));
-                BoundaryState::Markers {
-                    places: places.collect(),
-                    orientations: BTreeMap::new(),
-                    rest: Rest::Everything,
-                    hold: None,
-                }
+                let places = places.iter().map(|&(m, place)| (m.index(), place.into()));
+                at_places(places.collect(), BTreeMap::new())
             }
         })
+    }
+}
+
+/// Everything at rest, at places of markers and orientations of bodies.
+fn at_places(
+    places: BTreeMap<usize, Place>,
+    orientations: BTreeMap<usize, Orientation>,
+) -> BoundaryState {
+    BoundaryState::Markers {
+        places,
+        orientations,
+        rest: Rest::Everything,
+        hold: None,
     }
 }

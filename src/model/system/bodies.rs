@@ -202,7 +202,7 @@ pub fn directors_along(axis: &Vector3<f64>) -> Matrix3<f64> {
 }
 
 /// A material point of a body, or of the ground.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Attachment {
     /// The body; `None` is the ground.
     pub body: Option<usize>,

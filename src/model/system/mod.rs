@@ -209,7 +209,7 @@ pub struct Joint {
 }
 
 /// A stacked dielectric elastomer between two material points.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Muscle {
     /// Unique name.
     pub name: String,
@@ -269,7 +269,7 @@ pub struct Discretisation {
 }
 
 /// An elastic block of hexahedra.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid {
     /// Unique name.
     pub name: String,
