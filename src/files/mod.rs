@@ -275,23 +275,16 @@ fn feedback(problem: &ProblemSpec, task: &Task, at: &At<'_>) -> Result<Option<Re
         return Ok(None);
     };
     let place = at.key("feedback");
-    match task {
-        Task::Control(control) => {
-            let regulator = regulator(spec, &place)?;
-            let (Duration::Given(longest) | Duration::Free { max: longest, .. }) = control.duration;
-            match &spec.delay {
-                Some(delay) if regulator.delay > longest => {
-                    let expected = "a time no longer than the motion";
-                    Err(place.key("delay").wrong(delay.to_string(), expected))
-                }
-                _ => Ok(Some(regulator)),
-            }
-        }
-        _ => Err(place.wrong(
-            "a \"feedback\"",
-            "none but beside \"control\", along whose optimum it is",
-        )),
-    }
+    let Task::Control(control) = task else {
+        let expected = "none but beside \"control\", along whose optimum it is";
+        return Err(place.wrong("a \"feedback\"", expected));
+    };
+    let regulator = regulator(spec, &place)?;
+    let (Duration::Given(longest) | Duration::Free { max: longest, .. }) = control.duration;
+    let too_long = spec.delay.as_ref().filter(|_| regulator.delay > longest);
+    refuse!(if let Some(delay) = too_long, place.key("delay");
+        found delay, expected "a time no longer than the motion");
+    Ok(Some(regulator))
 }
 
 /// Reads a scene file.

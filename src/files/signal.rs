@@ -23,60 +23,28 @@ pub(crate) fn signal<M: FollowedInTime>(
         SignalSpec::Function(function) => function.as_ref(),
     };
     the_one!(scope, function;
-        "ramp" ramp |scope, spec| of_ramp(spec, kind, scope);
-        "sine" sine |scope, spec| of_sine(spec, kind, scope);
-        "table" table |scope, spec| of_table(spec, kind, scope);
-        "csv" csv |scope, spec| of_csv::<M>(spec, kind, scope);
-    )
-}
-
-/// A value of a kind; 0 where not written.
-fn or_zero<M: FollowedInTime>(
-    value: &Option<Quantity<M>>,
-    kind: &Kind,
-    scope: &Scope<'_>,
-) -> Result<f64> {
-    let value = value.as_ref();
-    value.map_or(Ok(0.0), |value| scope.value_as(value, kind))
-}
-
-fn of_ramp<M: FollowedInTime>(
-    spec: &RampSpec<M>,
-    kind: &Kind,
-    scope: &Scope<'_>,
-) -> Result<Signal> {
-    Ok(Signal::Ramp {
-        from: or_zero(&spec.from, kind, &scope.key("from"))?,
-        to: scope.key("to").value_as(&spec.to, kind)?,
-        start: spec.start.as_ref().map_or(0.0, |t| t.value()),
-        duration: scope.key("duration").positive(&spec.duration)?,
-    })
-}
-
-fn of_sine<M: FollowedInTime>(
-    spec: &SineSpec<M>,
-    kind: &Kind,
-    scope: &Scope<'_>,
-) -> Result<Signal> {
-    Ok(Signal::Sine {
-        mean: or_zero(&spec.mean, kind, &scope.key("mean"))?,
-        amplitude: scope.key("amplitude").value_as(&spec.amplitude, kind)?,
-        frequency: scope.key("period").positive(&spec.period)?.recip(),
-        phase: spec.phase.as_ref().map_or(0.0, |v| v.value()),
-    })
-}
-
-fn of_table<M: FollowedInTime>(
-    spec: &SignalTableSpec<M>,
-    kind: &Kind,
-    scope: &Scope<'_>,
-) -> Result<Signal> {
-    let [time, values] = ["time", "values"].map(|key| scope.key(key));
-    linear(
-        (&spec.time, &|k| time.index(k)),
-        (&spec.values, &|k| values.index(k)),
-        kind,
-        [&time, &values],
+        "ramp" ramp |at, ramp| {
+            let from = at.optional("from", &ramp.from, |at, from| at.value_as(from, kind))?;
+            Ok(Signal::Ramp {
+                from: from.unwrap_or(0.0),
+                to: at.key("to").value_as(&ramp.to, kind)?,
+                start: ramp.start.as_ref().map_or(0.0, Quantity::value),
+                duration: at.key("duration").positive(&ramp.duration)?,
+            })
+        };
+        "sine" sine |at, sine| {
+            let mean = at.optional("mean", &sine.mean, |at, mean| at.value_as(mean, kind))?;
+            Ok(Signal::Sine {
+                mean: mean.unwrap_or(0.0),
+                amplitude: at.key("amplitude").value_as(&sine.amplitude, kind)?,
+                frequency: at.key("period").positive(&sine.period)?.recip(),
+                phase: sine.phase.as_ref().map_or(0.0, Quantity::value),
+            })
+        };
+        "table" table |at, table| {
+            linear(&table.time, &table.values, kind, at, |key, k| at.key(key).index(k))
+        };
+        "csv" csv |at, csv| of_csv::<M>(csv, kind, at);
     )
 }
 
@@ -86,41 +54,33 @@ fn of_csv<M: FollowedInTime>(
     scope: &Scope<'_>,
 ) -> Result<Signal> {
     let columns = Columns::read(&spec.file, &scope.key("file"))?;
-    let [time, values] = ["time", "values"].map(|key| scope.key(key));
-    let times = columns.column::<Time>(&spec.time, &Time::kind(), &time)?;
-    let column = columns.column::<M>(&spec.values, kind, &values)?;
-    let mut signal = linear(
-        (&times, &|_| time.clone()),
-        (&column, &|_| values.clone()),
-        kind,
-        [&time, &values],
-    )?;
+    let times = columns.column::<Time>(&spec.time, &Time::kind(), &scope.key("time"))?;
+    let values = columns.column::<M>(&spec.values, kind, &scope.key("values"))?;
+    let mut signal = linear(&times, &values, kind, scope, |key, _| scope.key(key))?;
     if let (Signal::Table { times, .. }, Some(offset)) = (&mut signal, &spec.time_offset) {
         times.iter_mut().for_each(|time| *time -= offset.value());
     }
     Ok(signal)
 }
 
-/// Quantities, and the place of each.
-type Placed<'a, 's, M> = (&'a [Quantity<M>], &'a dyn Fn(usize) -> Scope<'s>);
-
-/// Linear between values at times.
+/// Linear between values at times; `place` is that of one of them by its key and number.
 fn linear<'s, M: FollowedInTime>(
-    (times, time): Placed<'_, 's, Time>,
-    (values, value): Placed<'_, 's, M>,
+    times: &[Quantity<Time>],
+    values: &[Quantity<M>],
     kind: &Kind,
-    [whole_times, whole_values]: [&Scope<'s>; 2],
+    scope: &Scope<'s>,
+    place: impl Fn(&str, usize) -> Scope<'s>,
 ) -> Result<Signal> {
     let instants: Vec<f64> = times.iter().map(Quantity::value).collect();
-    refuse!(if instants.is_empty(), whole_times; found "no times", expected "one or more");
-    if let Some(k) = instants.windows(2).position(|pair| pair[0] >= pair[1]) {
-        return Err(time(k + 1).wrong(times[k + 1].to_string(), "increasing times"));
-    }
-    refuse!(if values.len() != instants.len(), whole_values;
+    refuse!(if instants.is_empty(), scope.key("time"); found "no times", expected "one or more");
+    let falls = instants.windows(2).position(|pair| pair[0] >= pair[1]);
+    refuse!(if let Some(k) = falls, place("time", k + 1);
+        found times[k + 1], expected "increasing times");
+    refuse!(if values.len() != instants.len(), scope.key("values");
         found format!("{} values", values.len()),
         expected format!("{}, one for each time", instants.len()));
     let read = values.iter().enumerate();
-    let read = read.map(|(k, written)| value(k).value_as(written, kind));
+    let read = read.map(|(k, written)| place("values", k).value_as(written, kind));
     Ok(Signal::Table {
         times: instants,
         values: read.collect::<Result<_, _>>()?,

@@ -48,10 +48,9 @@ impl Recorded {
             ("weights", spec.weights.is_some()),
         ];
         let mut given = given.into_iter().filter(|(_, is_given)| *is_given);
-        if let (Some((first, _)), Some((second, _))) = (given.next(), given.next()) {
-            let expected = format!("one of both, not \"{first}\" too");
-            return Err(at.key(second).wrong("a second one", expected));
-        }
+        let both = (given.next(), given.next());
+        refuse!(if let (Some((first, _)), Some((second, _))) = both, at.key(second);
+            found "a second one", expected format!("one of both, not \"{first}\" too"));
         let values = self.values(&self.of, source, &at.key("column"))?;
         let of_all = self.deviation(spec, at)?;
         let deviations = match (&spec.deviations, &spec.weights) {
@@ -64,14 +63,13 @@ impl Recorded {
             let (Some(value), Some(deviation)) = (*value, deviations[k]) else {
                 continue;
             };
-            if deviation <= 0.0 || deviation.is_nan() {
-                let key = match spec.deviations {
-                    Some(_) => "deviations",
-                    None => "weights",
-                };
-                let found = format!("a value that is not positive, in row {}", k + 1);
-                return Err(at.key(key).wrong(found, "positive values"));
-            }
+            let key = match spec.deviations {
+                Some(_) => "deviations",
+                None => "weights",
+            };
+            refuse!(if deviation <= 0.0 || deviation.is_nan(), at.key(key);
+                found format!("a value that is not positive, in row {}", k + 1),
+                expected "positive values");
             readings.push(Reading {
                 time: source.times[k],
                 value,

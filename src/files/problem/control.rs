@@ -34,17 +34,18 @@ pub(crate) const MOST_INTERVALS: usize = 1_000_000;
 /// Intervals of the first grid where no number is given.
 const FIRST_INTERVALS: usize = 20;
 
+/// What is expected of keys of several motions in a problem of one.
+const NO_MOTIONS: &str = "none without \"motions\"";
+
 pub(crate) fn control(
     spec: &ControlSpec,
     scene: &WrittenScene<'_>,
     at: &At<'_>,
 ) -> Result<Control> {
-    let system = at.system;
-    let no_motions = "none without \"motions\"";
     refuse!(if !spec.shared_inputs.is_empty(), at.key("shared_inputs");
-        found "inputs in common", expected no_motions);
+        found "inputs in common", expected NO_MOTIONS);
     refuse!(if spec.combine.is_some(), at.key("combine");
-        found "an objective of several motions", expected no_motions);
+        found "an objective of several motions", expected NO_MOTIONS);
     let duration = duration(&spec.duration, &at.key("duration"))?;
     let intervals = match spec.intervals {
         Some(IntervalsSpec::Given(intervals)) => Some(intervals),
@@ -73,24 +74,23 @@ pub(crate) fn control(
     load(&mut start, &loads, 0.0);
     load(&mut goal, &loads, duration.first());
     let (mut given, course) = given_voltages(spec, &at.key("voltages"))?;
-    let sources = at.sources.iter().enumerate();
-    let mut sought = sources.filter(|(s, source)| source.takes_voltage && !given.contains_key(s));
-    let seeks_voltage = course.is_none() && sought.next().is_some();
+    let is_sought = |s: usize| at.sources[s].takes_voltage && !given.contains_key(&s);
+    let seeks_voltage = course.is_none() && (0..at.sources.len()).any(is_sought);
     let voltage_bounds = voltage_bounds(spec, seeks_voltage, at)?;
     for (key, state) in [("start", &start), ("goal", &goal)] {
         let is_given = |s: usize| course.is_some() || given.contains_key(&s);
         check_rest_voltages(state, is_given, voltage_bounds, &at.key(key))?;
     }
-    given.extend(absent_loads(system, |source| {
+    given.extend(absent_loads(at.system, |source| {
         loads.contains_key(&source) || load_bounds.contains_key(&source)
     }));
     given.extend(loads);
     check_final_conditions(&goal, &at.key("goal"))?;
     let limits = limits(&spec.limits, &at.key("limits"))?;
-    let guess = match &spec.guess {
-        Some(guess_spec) => guess(guess_spec, voltage_bounds, &at.key("guess"))?,
-        None => unwritten(&goal, system),
-    };
+    let guess = at.optional("guess", &spec.guess, |at, spec| {
+        guess(spec, voltage_bounds, at)
+    })?;
+    let guess = guess.unwrap_or_else(|| unwritten(&goal, at.system));
     let control = Control {
         duration,
         intervals: intervals.unwrap_or(FIRST_INTERVALS),
@@ -113,8 +113,7 @@ pub(crate) fn control(
         guess,
         solver: solver(&spec.solver, &at.key("solver"))?,
     };
-    let place = at.key("objective").key("peak_voltage");
-    let control = with_peak(control, spec.objective.peak_voltage, &place)?;
+    let control = with_peak(control, &spec.objective, &at.key("objective"))?;
     with_varied(control, &spec.sensitivity, scene, &at.key("sensitivity"))
 }
 
@@ -133,8 +132,10 @@ fn goal(spec: &ControlSpec, objective: &Objective, at: &At<'_>) -> Result<Bounda
 }
 
 /// The problem with the cost of the peak voltage, where that has a weight.
-fn with_peak(mut control: Control, weight: f64, at: &At<'_>) -> Result<Control> {
-    refuse!(if weight > 0.0 && !control.minimise_peak_voltage(weight, at.system), at;
+fn with_peak(mut control: Control, spec: &ObjectiveSpec, at: &At<'_>) -> Result<Control> {
+    let weight = spec.peak_voltage;
+    let is_given = weight > 0.0 && !control.minimise_peak_voltage(weight, at.system);
+    refuse!(if is_given, at.key("peak_voltage");
         found "a weight where all voltages are given", expected "a voltage that is sought");
     Ok(control)
 }
@@ -272,21 +273,17 @@ pub(crate) fn objective(spec: &ObjectiveSpec, at: &At<'_>) -> Result<Objective> 
     let ends: Vec<_> = at.key("final").each(&spec.at_the_end, at_the_end)?;
     let mut quantities = [along, ends].concat().concat();
     quantities.extend(amount_costs([spec.muscle_volume, spec.muscle_mass], at)?);
-    let mut of_sources = Vec::new();
-    for (key, energy, weight) in [
-        (
-            "electrical_energy",
-            SourceEnergy::Electrical,
-            &spec.electrical_energy,
-        ),
-        (
-            "mechanical_work",
-            SourceEnergy::Mechanical,
-            &spec.mechanical_work,
-        ),
-    ] {
-        of_sources.extend(energies(weight, energy, &at.key(key))?);
-    }
+    let [electrical, mechanical] = ["electrical_energy", "mechanical_work"].map(|key| at.key(key));
+    let mut of_sources = energies(
+        &spec.electrical_energy,
+        SourceEnergy::Electrical,
+        &electrical,
+    )?;
+    of_sources.extend(energies(
+        &spec.mechanical_work,
+        SourceEnergy::Mechanical,
+        &mechanical,
+    )?);
     let is_any = !quantities.is_empty() || !of_sources.is_empty();
     refuse!(if !is_any && weights.iter().all(|(_, weight)| *weight == 0.0), at;
         found "no weight",

@@ -82,14 +82,14 @@ fn unique(name: &str, names: &mut Vec<String>, at: &Scope<'_>) -> Result<()> {
 fn experiment(name: &str, spec: &ExperimentSpec, at: &At<'_>) -> Result<Recording> {
     let (start, voltages) = driven(spec.start.as_ref(), &spec.voltages, &spec.loads, at)?;
     let sought_start = SoughtStart::from(spec.sought_start);
-    if spec.at_rest && (sought_start != SoughtStart::Nothing || spec.start.is_some()) {
-        let key = match spec.start {
-            Some(_) => "start",
-            None => "sought_start",
-        };
-        let expected = "none beside \"at_rest\": states of rest follow from voltages and loads";
-        return Err(at.key(key).wrong("a start", expected));
-    }
+    let keys = [
+        ("start", spec.start.is_some()),
+        ("sought_start", sought_start != SoughtStart::Nothing),
+    ];
+    let written = keys.into_iter().find(|(_, is_written)| *is_written);
+    refuse!(if let (true, Some((key, _))) = (spec.at_rest, written), at.key(key);
+        found "a start",
+        expected "none beside \"at_rest\": states of rest follow from voltages and loads");
     Ok(Recording {
         name: name.to_owned(),
         scene: None,

@@ -86,17 +86,11 @@ pub(crate) fn check_end(
     at: &At<'_>,
 ) -> Result<()> {
     let changes = |(_, load): &(&usize, &Signal)| duration.final_value(load).is_none();
-    let changing = loads.iter().find(changes);
-    match changing.filter(|_| goal.voltages().is_some()) {
-        Some((&source, _)) => {
-            let found = "a load that still changes between the bounds of the free duration, while the goal rests under it";
-            let expected =
-                "one that is constant from the lower bound on, another goal, or a given duration";
-            let place = at.key(&at.sources[source].name);
-            Err(place.wrong(found, expected))
-        }
-        None => Ok(()),
-    }
+    let mut changing = loads.iter().filter(|_| goal.voltages().is_some());
+    refuse!(if let Some((&source, _)) = changing.find(changes), at.key(&at.sources[source].name);
+        found "a load that still changes between the bounds of the free duration, while the goal rests under it",
+        expected "one that is constant from the lower bound on, another goal, or a given duration");
+    Ok(())
 }
 
 /// Start and inputs of a motion under given ones: at rest in the reference configuration where no start is written.

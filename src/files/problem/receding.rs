@@ -19,10 +19,8 @@ pub(crate) fn add_plan(
     scope: &Scope<'_>,
     read: impl Fn(&Path) -> Result<(System, Task, Option<Regulator>)>,
 ) -> Result<()> {
-    let written = spec
-        .simulate
-        .as_ref()
-        .and_then(|one| one.controller.as_ref());
+    let simulate = spec.simulate.as_ref();
+    let written = simulate.and_then(|one| one.controller.as_ref());
     let written_delay = written.and_then(|one| one.delay.as_ref());
     let written = written.and_then(|one| one.horizon.as_ref());
     let (Some(horizon), Task::Simulate(simulation)) = (written, task) else {
@@ -30,9 +28,8 @@ pub(crate) fn add_plan(
     };
     let place = scope.key("simulate").key("controller").key("horizon");
     let most = Ahead::MOST_INTERVALS;
-    place
-        .key("intervals")
-        .count(horizon.intervals, "interval", most)?;
+    let intervals = place.key("intervals");
+    intervals.count(horizon.intervals, "interval", most)?;
     let Simulation {
         duration,
         step,
@@ -75,7 +72,7 @@ pub(crate) fn add_plan(
         h: sample,
         ..(*controller.law).clone()
     });
-    if let Some(simulate) = &spec.simulate {
+    if let Some(simulate) = simulate {
         refuse_given(simulate, &controller.law, &scope.key("simulate"))?;
     }
     let regulator = regulator.unwrap_or_default();

@@ -133,13 +133,9 @@ fn beside(si: f64) -> [(Value, f64); 2] {
 }
 
 fn check_tolerance(tolerance: Option<f64>, at: &Scope<'_>) -> Result<()> {
-    match tolerance {
-        Some(size) if size <= 0.0 => {
-            let found = "a tolerance that is not positive";
-            Err(at.key("tolerance").wrong(found, A_TOLERANCE))
-        }
-        _ => Ok(()),
-    }
+    refuse!(if tolerance.is_some_and(|size| size <= 0.0), at.key("tolerance");
+        found "a tolerance that is not positive", expected A_TOLERANCE);
+    Ok(())
 }
 
 /// Kind of a number where it has one, and its unit.

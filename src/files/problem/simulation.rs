@@ -5,7 +5,7 @@ use crate::dynamics::{Integrator, MultigridUse, Newton, Solving};
 use crate::feedback::Law;
 use crate::files::json::either::AutoOr;
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::{Result, Scope, refuse};
+use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::problem::at::{At, CoordinatesSpec};
 use crate::files::problem::feedback::{ControllerSpec, controller};
 use crate::files::problem::loads::{LoadMap, driven};
@@ -257,27 +257,16 @@ pub(crate) fn integrator(spec: Option<&IntegratorSpec>, at: &At<'_>) -> Result<I
 }
 
 fn with_parameter(object: &IntegratorObject, at: &Scope<'_>) -> Result<Integrator> {
-    match (object.galerkin, object.generalised_alpha) {
-        (Some(degree), None) if (1..=HIGHEST).contains(&degree) => {
-            Ok(Integrator::Galerkin { degree })
-        }
-        (Some(degree), None) => {
-            let expected = format!("a degree from 1 to {HIGHEST}");
-            Err(at.key("galerkin").wrong(degree.to_string(), expected))
-        }
-        (None, Some(radius)) if (0.0..=1.0).contains(&radius) => Ok(Integrator::GeneralisedAlpha {
-            spectral_radius: radius,
-        }),
-        (None, Some(radius)) => {
-            let place = at.key("generalised_alpha");
-            Err(place.wrong(radius.to_string(), "a spectral radius from 0 to 1"))
-        }
-        (galerkin, generalised_alpha) => {
-            let there = [
-                ("galerkin", galerkin.is_some()),
-                ("generalised_alpha", generalised_alpha.is_some()),
-            ];
-            at.one_key(there).map(|_| Integrator::Midpoint)
-        }
-    }
+    Ok(the_one!(at, object;
+        "galerkin" galerkin |at, degree| {
+            refuse!(if !(1..=HIGHEST).contains(degree), at;
+                found degree, expected format!("a degree from 1 to {HIGHEST}"));
+            Integrator::Galerkin { degree: *degree }
+        };
+        "generalised_alpha" generalised_alpha |at, radius| {
+            refuse!(if !(0.0..=1.0).contains(radius), at;
+                found radius, expected "a spectral radius from 0 to 1");
+            Integrator::GeneralisedAlpha { spectral_radius: *radius }
+        };
+    ))
 }

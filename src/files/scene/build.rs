@@ -289,26 +289,20 @@ fn nearest(mesh: &Mesh, at: &Vector3<f64>) -> (usize, f64) {
 
 /// The longest edge in mm of the elements at a node.
 fn size_at(mesh: &Mesh, node: usize) -> f64 {
-    const EDGES: [[usize; 2]; 12] = [
-        [0, 1],
-        [1, 2],
-        [2, 3],
-        [3, 0],
-        [4, 5],
-        [5, 6],
-        [6, 7],
-        [7, 4],
-        [0, 4],
-        [1, 5],
-        [2, 6],
-        [3, 7],
-    ];
-    let around = mesh
-        .hexahedra
-        .iter()
-        .filter(|corners| corners.contains(&node));
-    around
-        .flat_map(|corners| EDGES.map(|[a, b]| mesh.nodes[corners[a]] - mesh.nodes[corners[b]]))
-        .map(|edge| edge.norm())
-        .fold(0.0, f64::max)
+    let elements = mesh.hexahedra.iter();
+    let around = elements.filter(|corners| corners.contains(&node));
+    // Edges of the lower face, of the upper one and between them.
+    let edges = |corner: usize| {
+        let next = (corner + 1) % 4;
+        let upper = [corner + 4, next + 4];
+        [[corner, next], upper, [corner, corner + 4]]
+    };
+    let length = |corners: &[usize; 8], [a, b]: [usize; 2]| {
+        (mesh.nodes[corners[a]] - mesh.nodes[corners[b]]).norm()
+    };
+    let lengths = around.flat_map(|corners| {
+        let edges = (0..4).flat_map(edges);
+        edges.map(move |edge| length(corners, edge))
+    });
+    lengths.fold(0.0, f64::max)
 }

@@ -1,6 +1,6 @@
 //! Conversion of a muscle of a scene file to its span, section and model.
 
-use crate::files::json::scope::{Result, Scope};
+use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::scene::names::{find_compressible, find_material};
 use crate::files::scene::point::unit_axis;
 use crate::files::scene::spec::{MuscleModel, MuscleSpec};
@@ -48,12 +48,11 @@ fn fidelity(
             ("element", spec.element.is_some()),
             ("first_side", spec.first_side.is_some()),
         ];
-        let Some((key, _)) = keys.into_iter().find(|(_, there)| *there) else {
-            return Ok(Fidelity::Lumped);
-        };
-        let found = format!("{key:?} of a lumped muscle");
-        let expected = "no such key, or \"model\": \"finite_elements\"";
-        return Err(scope.key(key).wrong(found, expected));
+        let written = keys.into_iter().find(|(_, there)| *there);
+        refuse!(if let Some((key, _)) = written, scope.key(key);
+            found format!("{key:?} of a lumped muscle"),
+            expected "no such key, or \"model\": \"finite_elements\"");
+        return Ok(Fidelity::Lumped);
     }
     find_compressible(&spec.material, materials, &scope.key("material"))?;
     let Some(elements) = spec.elements else {

@@ -101,12 +101,10 @@ pub(crate) fn nodes_in_box(
         (0..3).all(|axis| low[axis] <= at[axis] && at[axis] <= high[axis])
     };
     let nodes: Vec<usize> = (0..mesh.nodes.len()).filter(is_in).collect();
-    if nodes.is_empty() {
-        let [from, to] = extent(mesh).map(|corner| place(&corner));
-        let found = format!("{owner} in a box that holds no node");
-        let expected = format!("a box with nodes: those of the mesh lie from {from} to {to}");
-        return Err(scope.wrong(found, expected));
-    }
+    let [from, to] = extent(mesh).map(|corner| place(&corner));
+    refuse!(if nodes.is_empty(), scope;
+        found format!("{owner} in a box that holds no node"),
+        expected format!("a box with nodes: those of the mesh lie from {from} to {to}"));
     Ok(nodes)
 }
 

@@ -25,24 +25,17 @@ use crate::files::urdf::element::{LeftOut, Result};
 /// # Errors
 /// It cannot be read, or is no tree of links and joints that a scene can hold.
 pub fn read_urdf(path: &Path) -> Result<FromUrdf> {
-    let wrong = |found: String, expected: String| UrdfError {
+    let wrong = |found: &str, expected: &str| UrdfError {
         place: path.display().to_string(),
-        found,
-        expected,
+        found: found.to_owned(),
+        expected: expected.to_owned(),
     };
     let bytes = of_file(path).map_err(|error| match error {
-        NoBytes::Unreadable(cause) => wrong(
-            format!("no readable file ({cause})"),
-            "a URDF file".to_owned(),
-        ),
-        NoBytes::TooLarge(found, expected) => wrong(found, expected),
+        NoBytes::Unreadable(cause) => wrong(&format!("no readable file ({cause})"), "a URDF file"),
+        NoBytes::TooLarge(found, expected) => wrong(&found, &expected),
     })?;
-    let text = String::from_utf8(bytes).map_err(|_| {
-        wrong(
-            "bytes that are no UTF-8".to_owned(),
-            "a URDF file".to_owned(),
-        )
-    })?;
+    let text = String::from_utf8(bytes);
+    let text = text.map_err(|_| wrong("bytes that are no UTF-8", "a URDF file"))?;
     parse_urdf(path, &text)
 }
 

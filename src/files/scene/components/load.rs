@@ -130,10 +130,8 @@ impl LoadSpec {
             ("follows", self.follows.is_some(), not_following),
         ];
         for (key, is_written, why) in all {
-            if let (true, Some(why)) = (is_written, why) {
-                let expected = format!("no such key, {why}");
-                return Err(scope.key(key).wrong(format!("{key:?}"), expected));
-            }
+            refuse!(if let (true, Some(why)) = (is_written, why), scope.key(key);
+                found format!("{key:?}"), expected format!("no such key, {why}"));
         }
         Ok(())
     }
