@@ -305,14 +305,7 @@ impl Input {
             command: typed(),
             input: self.problem,
             set: self.set,
-            output: None,
-            max_seconds: None,
-            max_iterations: None,
-            from: None,
-            wanted: None,
-            figures: Figures::default(),
-            progress: ProgressDisplay::Never,
-            page: PageWanted::Written,
+            ..CommandInput::default()
         }
     }
 }

@@ -2,10 +2,7 @@
 
 use std::path::PathBuf;
 
-use proboscis::app::{
-    CommandInput, PageWanted, ProgressDisplay, RunIn, run_observed, solve_text_from_starts,
-};
-use proboscis::report::Figures;
+use proboscis::app::{CommandInput, RunIn, run_observed, solve_text_from_starts};
 use proboscis::workflow::accuracy::AccuracyTarget;
 use pyo3::prelude::*;
 
@@ -16,15 +13,8 @@ pub(crate) fn request(command: String, input: PathBuf, folder: Option<PathBuf>) 
     CommandInput {
         command,
         input,
-        set: Vec::new(),
         output: folder,
-        max_seconds: None,
-        max_iterations: None,
-        from: None,
-        wanted: None,
-        figures: Figures::default(),
-        progress: ProgressDisplay::Never,
-        page: PageWanted::Written,
+        ..CommandInput::default()
     }
 }
 

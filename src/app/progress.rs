@@ -11,11 +11,12 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// Display of progress.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ProgressDisplay {
     /// If standard error is a terminal.
     OnTerminal,
     /// Never.
+    #[default]
     Never,
 }
 

@@ -8,12 +8,12 @@ mod table;
 mod variant_record;
 
 use crate::app::{
-    Batch, CommandError, CommandInput, CommandOutput, FolderRecord, Found, PageWanted,
-    ProgressDisplay, RunEnd, RunIn, check_run_in, make_folder, run_all,
+    Batch, CommandError, CommandInput, CommandOutput, FolderRecord, Found, ProgressDisplay, RunEnd,
+    RunIn, check_run_in, make_folder, run_all,
 };
+use crate::report::atomic;
 use crate::report::origin::Origin;
 use crate::report::table::cells_csv;
-use crate::report::{Figures, atomic};
 use crate::stop;
 use crate::sweep::read::{Sweep, Variant, read_sweep};
 use crate::sweep::variant_record::VariantRecord;
@@ -120,17 +120,11 @@ fn solve<'a>(
     ends: &mut BTreeMap<&'a str, VariantRecord>,
 ) -> Result<(), CommandError> {
     let run = |variant: &&Variant| CommandInput {
-        command: String::new(),
         input: sweep.problem.clone(),
         set: variant.set.clone(),
         output: Some(folder(variant)),
-        max_seconds: None,
-        max_iterations: None,
-        from: None,
-        wanted: None,
-        figures: Figures::default(),
         progress: request.progress,
-        page: PageWanted::Written,
+        ..CommandInput::default()
     };
     let results = request.folder();
     let runs: Vec<CommandInput> = todo.iter().map(run).collect();
