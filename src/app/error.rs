@@ -102,12 +102,12 @@ impl CommandError {
 
     /// Status of a problem that is right, but has no state of rest to begin or end with, or no optimum that its controller follows.
     pub fn unanswered(&self) -> Option<&'static str> {
-        match self {
-            Self::InFile { error, .. } => match error {
-                WorkflowError::NoEquilibrium { .. } => Some("no_equilibrium"),
-                WorkflowError::Unsolved { .. } => Some("plan_unsolved"),
-                _ => None,
-            },
+        let Self::InFile { error, .. } = self else {
+            return None;
+        };
+        match error {
+            WorkflowError::NoEquilibrium { .. } => Some("no_equilibrium"),
+            WorkflowError::Unsolved { .. } => Some("plan_unsolved"),
             _ => None,
         }
     }

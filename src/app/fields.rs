@@ -224,37 +224,22 @@ fn cells(
             fields.stress += Viscosity { viscosity }.stress(&block.shapes[e], &x, &v);
         }
     }
-    let each = all.iter();
+    let vectors = |name, of: fn(&Fields) -> &Vector| {
+        field(name, 3, all.iter().flat_map(|f| components(of(f), 1e3)))
+    };
+    let numbers = |name, of: fn(&Fields) -> f64| field(name, 1, all.iter().map(of));
+    let stresses = all.iter().flat_map(|f| by_rows(&f.stress, 1e6));
+    let regions = block.solid.mesh.regions.iter().map(|&r| r as f64);
     vec![
-        field(
-            "electric field [V/m]",
-            3,
-            each.clone()
-                .flat_map(|f| components(&f.electric_field, 1e3)),
-        ),
+        vectors("electric field [V/m]", |f| &f.electric_field),
         // N/(V mm) is 1000 C/m².
-        field(
-            "electric displacement [C/m^2]",
-            3,
-            each.clone()
-                .flat_map(|f| components(&f.electric_displacement, 1e3)),
-        ),
-        field(
-            "stress [Pa]",
-            9,
-            each.clone().flat_map(|f| by_rows(&f.stress, 1e6)),
-        ),
-        field(
-            "von Mises stress [Pa]",
-            1,
-            each.clone().map(|f| 1e6 * f.von_mises()),
-        ),
-        field("J", 1, each.map(|f| f.jacobian_determinant)),
-        field(
-            "region",
-            1,
-            block.solid.mesh.regions.iter().map(|&r| r as f64),
-        ),
+        vectors("electric displacement [C/m^2]", |f| {
+            &f.electric_displacement
+        }),
+        field("stress [Pa]", 9, stresses),
+        numbers("von Mises stress [Pa]", |f| 1e6 * f.von_mises()),
+        numbers("J", |f| f.jacobian_determinant),
+        field("region", 1, regions),
         field("block", 1, (0..count).map(|_| number as f64)),
     ]
 }

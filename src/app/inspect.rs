@@ -144,13 +144,15 @@ fn of_model(model: &Model, control: Option<&Control>) -> Inspected {
         (true, None) => factorisation(model),
         _ => "",
     };
+    let reasons = plan.effects.iter().map(|e| (&e.name, &e.why));
+    let missing = plan.absent.iter().map(|a| (&a.name, &a.why));
     let words = format!(
         "{}, {} coordinates\n\n{}\n{}\n{}\n{}{}{tangent}{}{}",
         system.name,
         model.coordinates.name(),
         active(&plan),
-        reasons(&plan),
-        missing(&plan),
+        listed("active because of", reasons),
+        listed("inactive", missing),
         left_out(&model.loops),
         numbers(&sizes),
         unit_questions(system),
@@ -233,18 +235,6 @@ fn active(plan: &Plan) -> String {
         rows.push(row);
     }
     table::aligned(&rows)
-}
-
-/// Lists the reasons for the terms.
-fn reasons(plan: &Plan) -> String {
-    let effects = plan.effects.iter();
-    listed("active because of", effects.map(|e| (&e.name, &e.why)))
-}
-
-/// Lists the absent terms.
-fn missing(plan: &Plan) -> String {
-    let absent = plan.absent.iter();
-    listed("inactive", absent.map(|a| (&a.name, &a.why)))
 }
 
 /// Lists names under a heading with their texts, in two columns.
