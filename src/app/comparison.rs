@@ -102,7 +102,7 @@ impl Comparison {
 
     /// One line a marker.
     pub(super) fn notes(&self) -> Vec<String> {
-        let line = |(name, apart): (&String, &Apart)| {
+        let lines = self.markers.iter().map(|(name, apart)| {
             format!(
                 "{name}: at most {:.3} mm from the motion of {}, at its end {:.3} mm, after travelling {:.1} mm",
                 1e3 * apart.greatest,
@@ -110,8 +110,8 @@ impl Comparison {
                 1e3 * apart.last,
                 1e3 * apart.path_length
             )
-        };
-        self.markers.iter().map(line).collect()
+        });
+        lines.collect()
     }
 }
 
@@ -169,8 +169,8 @@ impl Accuracy {
         if !orders.is_empty() {
             notes.push(format!("orders observed: {}", orders.join(", ")));
         }
-        let grows = |(name, p): (&&str, &f64)| (*p <= 0.0).then(|| (*name).to_owned());
-        let growing: Vec<String> = self.order.iter().filter_map(grows).collect();
+        let growing = self.order.iter().filter(|(_, p)| **p <= 0.0);
+        let growing: Vec<&str> = growing.map(|(name, _)| *name).collect();
         if !growing.is_empty() {
             notes.push(format!(
                 "the last refinement changed {} no less than the one before: errors do not fall steadily, their estimates are rough",

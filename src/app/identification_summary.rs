@@ -194,11 +194,10 @@ impl Identification<'_> {
 
     /// The start of a recording; the unit of a rate is that of the coordinate over s.
     fn start(&self, one: &FoundStart) -> Entries {
-        let joint = |(name, unit, value, rate): (_, _, _, _)| {
+        let joints = one.in_si(self.system).map(|(name, unit, value, rate)| {
             let joint = Entries::default().with("name", name).with("unit", unit);
             joint.with("value", value).with("rate", rate)
-        };
-        let joints = one.in_si(self.system).map(joint);
+        });
         Entries::default()
             .with("recording", &self.task.recordings[one.recording].name)
             .with_each("joints", joints)
@@ -206,7 +205,7 @@ impl Identification<'_> {
 
     /// Residuals of quantities of recordings, with the roots of their mean squares in SI units.
     fn residuals(&self, series: &[Series], whiteness: &[Option<Whiteness>]) -> Vec<Entries> {
-        let of = |(one, test): (&Series, &Option<Whiteness>)| {
+        let each = series.iter().zip(whiteness).map(|(one, test)| {
             let recording = &self.task.recordings[one.recording];
             let channel = &recording.channels[one.channel];
             let pairs = one.measured.iter().zip(&one.predicted);
@@ -227,8 +226,8 @@ impl Identification<'_> {
                     channel.unit.1 * (sum / one.times.len() as f64).sqrt(),
                 )
                 .with_some("whiteness", test)
-        };
-        series.iter().zip(whiteness).map(of).collect()
+        });
+        each.collect()
     }
 
     /// A recording that was held out.

@@ -141,13 +141,13 @@ pub(super) fn joints(system: &System, trajectory: &Trajectory) -> OfUnits {
 
 /// Deviations of markers and joints from their references over time in s: distances in mm and angles in degrees.
 pub(super) fn deviations(times: &[f64], tracked: &[Tracked]) -> OfUnits {
-    let curve = |(i, one): (usize, &Tracked)| {
+    let curves = tracked.iter().enumerate().map(|(i, one)| {
         let values = one.deviation.iter().map(|e| shown(one.unit) * e);
         let points = over_time(times, values);
         (one.unit, Series::curve(&one.name, points, style::hue(i)))
-    };
+    });
     OfUnits {
-        curves: tracked.iter().enumerate().map(curve).collect(),
+        curves: curves.collect(),
         labels: [("m", "deviation [mm]"), ("rad", "deviation [°]")],
         of_both: "deviation [°, mm]",
     }

@@ -163,18 +163,18 @@ fn draw(canvas: &Canvas<'_>, bars: &[Bar<'_>], left: f64, height: f64) {
 /// The same as a plot of the page.
 pub fn bars_of_page(list: &[Sensitivity]) -> Option<LinePlot> {
     let bars = bars(list);
-    let bar = |(row, bar): (usize, &Bar<'_>)| {
+    let series = bars.iter().enumerate().map(|(row, bar)| {
         let y = -(row as f64) - 1.0;
         let points = vec![[-bar.change.abs(), y], [bar.change.abs(), y]];
         Series {
             width: 6.0,
             ..Series::curve(bar.name, points, style::hue(row))
         }
-    };
+    });
     let plot = LinePlot::new(
         Axis::linear("change of the objective with ± tolerance", Extent::Padded),
         Axis::linear("", Extent::Padded),
-        bars.iter().enumerate().map(bar).collect(),
+        series.collect(),
     );
     (!bars.is_empty()).then_some(plot)
 }

@@ -125,9 +125,9 @@ fn script(modules: &[&str]) -> String {
 
 /// The elements of the libraries, which the page unpacks.
 fn libraries() -> String {
-    let element = |(name, code): (&str, &[u8])| {
+    let elements = LIBRARIES.map(|(name, code)| {
         let text = STANDARD.encode(code);
         format!("<script type=\"application/gzip\" id=\"library-{name}\">{text}</script>\n")
-    };
-    LIBRARIES.map(element).concat()
+    });
+    elements.concat()
 }

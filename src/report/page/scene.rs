@@ -2,7 +2,7 @@
 
 use crate::kinematics::Pose;
 use crate::mesh::triangulated::Surface;
-use crate::model::system::{Attachment, Joint, JointKind, Marker};
+use crate::model::system::{Attachment, Joint, JointKind};
 use crate::report::drawing::{component_lines, ground_plate, held_faces, lumped};
 use crate::report::load_arrows::LoadArrows;
 use crate::report::skins::{Skin, shown};
@@ -236,7 +236,7 @@ impl Stage<'_> {
     fn markers(&self) -> Vec<Value> {
         let (system, motion) = (self.run.system, self.run.trajectory);
         let kept = chosen(motion.times.len());
-        let marker = |(m, marker): (usize, &Marker)| {
+        let markers = system.markers.iter().enumerate().map(|(m, marker)| {
             let compared = self.run.comparison.map(|(_, other)| {
                 let path = other.path(m);
                 places(chosen(path.len()).map(|k| &path[k]))
@@ -267,8 +267,8 @@ impl Stage<'_> {
                 "compared": compared,
                 "followed": followed,
             })
-        };
-        system.markers.iter().enumerate().map(marker).collect()
+        });
+        markers.collect()
     }
 }
 
