@@ -1,8 +1,30 @@
-//! The linear systems of a solve in `summary.json`.
+//! The evaluations and the linear systems of a solve in `summary.json`.
 
 use crate::files::Entries;
-use crate::ipopt::LinearReport;
+use crate::ipopt::{LinearReport, SolverResult};
 use crate::sparse::multigrid::MultigridReport;
+
+/// Number of evaluations of each quantity by the solver.
+pub(super) fn evaluations(solution: &SolverResult) -> Entries {
+    let counts = &solution.evaluations;
+    Entries::default()
+        .with("objective", counts.objective)
+        .with("gradient", counts.gradient)
+        .with("constraints", counts.constraints)
+        .with("jacobian", counts.jacobian)
+        .with("hessian", counts.hessian)
+}
+
+/// Mean time in µs of one evaluation per interval; nothing where there was none.
+pub(super) fn microseconds(solution: &SolverResult, intervals: usize) -> Entries {
+    let (seconds, counts) = (&solution.seconds, &solution.evaluations);
+    let mean = |seconds: f64, evaluations: usize| {
+        (evaluations > 0).then(|| 1e6 * seconds / (evaluations * intervals) as f64)
+    };
+    Entries::default()
+        .with("jacobian", mean(seconds.jacobian, counts.jacobian))
+        .with("hessian", mean(seconds.hessian, counts.hessian))
+}
 
 /// Solver of the linear systems, with counts and times of that along the horizon.
 pub(super) fn linear_systems(report: &LinearReport) -> Entries {

@@ -1,7 +1,7 @@
 //! A control problem in `summary.json`, on its page and in the answer of its command: program, notes, times, rows, convergence, goal.
 
 use crate::app::kept::partial_result::STOPPED;
-use crate::app::linear_systems::linear_systems;
+use crate::app::linear_systems::{evaluations, linear_systems, microseconds};
 use crate::app::request::{CommandOutput, counted};
 use crate::app::sensitivity_summary;
 use crate::app::summary::{Seconds, Summary};
@@ -35,20 +35,6 @@ pub(super) fn program(system: &System, control: &Control, result: &SolveResult) 
         ..
     } = optimum;
     let intervals = motion.intervals();
-    let (seconds, counts) = (&solution.seconds, &solution.evaluations);
-    let evaluations = Entries::default()
-        .with("objective", counts.objective)
-        .with("gradient", counts.gradient)
-        .with("constraints", counts.constraints)
-        .with("jacobian", counts.jacobian)
-        .with("hessian", counts.hessian);
-    // The mean of one evaluation; nothing where there was none.
-    let per_interval = |seconds: f64, evaluations: usize| {
-        (evaluations > 0).then(|| 1e6 * seconds / (evaluations * intervals) as f64)
-    };
-    let microseconds = Entries::default()
-        .with("jacobian", per_interval(seconds.jacobian, counts.jacobian))
-        .with("hessian", per_interval(seconds.hessian, counts.hessian));
     let infeasibility = Some(optimum.infeasibility).filter(|value| value.is_finite());
     Entries::default()
         .with("objective", solution.objective)
@@ -61,8 +47,8 @@ pub(super) fn program(system: &System, control: &Control, result: &SolveResult) 
         .with("jacobian_nonzeros", size.jacobian_nonzeros)
         .with("hessian_nonzeros", size.hessian_nonzeros)
         .with("linear_solver", linear_systems(&solution.linear))
-        .with("evaluations", evaluations)
-        .with("interval_microseconds", microseconds)
+        .with("evaluations", evaluations(solution))
+        .with("interval_microseconds", microseconds(solution, intervals))
         // The greatest scaled violation of an equation or limit; absent where one has no value.
         .with_some("infeasibility", infeasibility)
         // The worst rows that do not hold; none of a solution.

@@ -4,7 +4,13 @@ use crate::files::json::layout::lay_out;
 use serde::{Serialize, Serializer};
 use serde_json::value::{RawValue, to_raw_value};
 
-/// Names with values: a section of a result.
+/// Names with values: a section of a result, which says the name of a value and where it is from at once, in the order of the file.
+///
+/// ```text
+/// Entries::default()
+///     .with("steps", steps)
+///     .with_some("tolerance", task.tolerance)
+/// ```
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Entries(Vec<(&'static str, Box<RawValue>)>);
 
