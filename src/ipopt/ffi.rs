@@ -117,22 +117,15 @@ impl Problem {
         x: &mut [f64],
         costates: &mut Multipliers,
     ) -> i32 {
-        assert_eq!(x.len(), self.variables, "one value per variable");
-        assert_eq!(
-            costates.lower.len(),
-            self.variables,
-            "one multiplier per lower bound"
-        );
-        assert_eq!(
-            costates.upper.len(),
-            self.variables,
-            "one multiplier per upper bound"
-        );
-        assert_eq!(
-            costates.constraints.len(),
-            self.constraints,
-            "one multiplier per constraint"
-        );
+        let Multipliers {
+            constraints,
+            lower,
+            upper,
+        } = costates;
+        let lengths = [x.len(), lower.len(), upper.len(), constraints.len()];
+        let (n, m) = (self.variables, self.constraints);
+        let expected = "a value and two multipliers per variable, and one per constraint";
+        assert_eq!(lengths, [n, n, n, m], "{expected}");
         let mut session = Session {
             evaluator,
             panic: None,
@@ -145,9 +138,9 @@ impl Problem {
                 x.as_mut_ptr(),
                 ptr::null_mut(),
                 ptr::null_mut(),
-                costates.constraints.as_mut_ptr(),
-                costates.lower.as_mut_ptr(),
-                costates.upper.as_mut_ptr(),
+                constraints.as_mut_ptr(),
+                lower.as_mut_ptr(),
+                upper.as_mut_ptr(),
                 (&raw mut session).cast(),
             )
         };
@@ -211,12 +204,9 @@ unsafe fn write<'s, T>(start: *mut T, length: c_int) -> &'s mut [T] {
 
 /// Copies the places of a sparse matrix, which fit into `c_int` since the numbers of rows and columns do.
 fn copy_entries(entries: &Entries, rows: &mut [c_int], cols: &mut [c_int]) -> bool {
+    let put = |from: u32, to: &mut c_int| c_int::try_from(from).map(|index| *to = index).is_ok();
     let copy = |from: &[u32], to: &mut [c_int]| {
-        from.len() == to.len()
-            && from
-                .iter()
-                .zip(to)
-                .all(|(&from, to)| c_int::try_from(from).map(|index| *to = index).is_ok())
+        from.len() == to.len() && from.iter().zip(to).all(|(&from, to)| put(from, to))
     };
     copy(&entries.rows, rows) && copy(&entries.cols, cols)
 }

@@ -166,10 +166,8 @@ impl Options {
         let mut integer =
             |name: &str, value: i32| settings.insert(name.to_owned(), OptionValue::Integer(value));
         integer("print_level", 0);
-        integer(
-            "max_iter",
-            i32::try_from(self.max_iterations).unwrap_or(i32::MAX),
-        );
+        let iterations = i32::try_from(self.max_iterations).unwrap_or(i32::MAX);
+        integer("max_iter", iterations);
         if solver.name == MUMPS {
             integer("mumps_pivot_order", MUMPS_ORDERING);
         }

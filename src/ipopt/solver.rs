@@ -253,11 +253,10 @@ impl<N: Nlp> Solver<N> {
         }
         let taken = self.options.taken()?;
         let is_along = taken.is_along;
-        if !is_along && !mumps::has_room() {
-            return Err(IpoptError::NoRoom);
-        }
-        if !is_along && !mumps::has_threads() {
-            return Err(IpoptError::NoThreads);
+        match is_along {
+            false if !mumps::has_room() => return Err(IpoptError::NoRoom),
+            false if !mumps::has_threads() => return Err(IpoptError::NoThreads),
+            _ => {}
         }
         let KnownBounds {
             variables,
@@ -344,15 +343,13 @@ fn measure(program: &mut impl Nlp, x: &[f64], g: &mut [f64]) -> (f64, f64) {
 }
 
 fn check_structure(entries: &Entries, rows: usize, cols: usize, matrix: &str) {
-    let below =
-        |indices: &[u32], count: usize| indices.iter().all(|&index| (index as usize) < count);
     assert_eq!(
         entries.rows.len(),
         entries.cols.len(),
         "as many rows as columns in the structure of the {matrix}"
     );
     assert!(
-        below(&entries.rows, rows) && below(&entries.cols, cols),
+        entries.places().all(|(row, col)| row < rows && col < cols),
         "{matrix} of {rows} rows and {cols} columns"
     );
 }
@@ -414,27 +411,18 @@ impl KnownBounds {
     pub(super) fn take(&mut self, variables: &Bounds, constraints: &Bounds) -> bool {
         let Bounds { lower, upper } = constraints;
         let is_equation = |low: f64, high: f64| low == high && low.is_finite();
-        let rights = lower
-            .iter()
-            .zip(upper)
-            .map(|(&low, &high)| match is_equation(low, high) {
-                true => low,
-                false => 0.0,
-            });
+        let both = lower.iter().zip(upper);
+        let rights = both.map(|(&low, &high)| if is_equation(low, high) { low } else { 0.0 });
         self.right.clear();
         self.right.extend(rights);
         let known = &mut self.constraints;
+        let is_known = |known: &[f64], bounds: &[f64]| {
+            let bounds = differences(bounds, &self.right);
+            known.iter().copied().eq(bounds)
+        };
         let are_known = self.variables == *variables
-            && known
-                .lower
-                .iter()
-                .copied()
-                .eq(differences(lower, &self.right))
-            && known
-                .upper
-                .iter()
-                .copied()
-                .eq(differences(upper, &self.right));
+            && is_known(&known.lower, lower)
+            && is_known(&known.upper, upper);
         if !are_known {
             self.variables.clone_from(variables);
             for (known, bounds) in [(&mut known.lower, lower), (&mut known.upper, upper)] {

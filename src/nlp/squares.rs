@@ -130,11 +130,8 @@ impl<N: Nlp> InSquares<N> {
         }
         let columns = jacobian.cols.iter().map(|&col| col as usize).enumerate();
         let places = hessian.places().map(|(row, col)| [row, col]);
-        let length = if squares.list.is_empty() {
-            0
-        } else {
-            is_square.len()
-        };
+        let has_squares = !squares.list.is_empty();
+        let length = if has_squares { is_square.len() } else { 0 };
         Self {
             jacobian: columns.filter(|&(_, col)| is_square[col]).collect(),
             hessian: places

@@ -4,43 +4,71 @@
 
 use std::fmt;
 
-/// Status of a solve at its end.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub enum Status {
+/// Declares the statuses, each with its word and with its numbers in Ipopt.
+macro_rules! statuses {
+    ($($(#[$doc:meta])* $name:ident = $word:literal: $codes:pat,)*) => {
+        /// Status of a solve at its end.
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+        pub enum Status {
+            $($(#[$doc])* $name,)*
+        }
+
+        impl Status {
+            /// One word in snake case, for `summary.json`.
+            #[must_use]
+            pub const fn word(self) -> &'static str {
+                match self {
+                    $(Self::$name => $word,)*
+                }
+            }
+
+            /// Meaning of an `ApplicationReturnStatus`.
+            ///
+            /// The numbers are the same in all versions of Ipopt; −5, the limit of wall time, came with 3.14.
+            pub(crate) const fn from_code(code: i32) -> Self {
+                match code {
+                    $($codes => Self::$name,)*
+                }
+            }
+        }
+    };
+}
+
+statuses! {
     /// A point satisfies the optimality conditions to the tolerance asked for.
-    Solved,
+    Solved = "solved": 0,
     /// A point satisfies the optimality conditions to the weaker "acceptable" tolerance, and no further progress was seen.
-    Acceptable,
+    Acceptable = "acceptable": 1,
     /// The violation of the constraints has a local minimum that is not zero: locally, the problem has no solution.
-    Infeasible,
+    Infeasible = "infeasible": 2,
     /// The steps became too small to change the variables.
-    SearchDirectionTooSmall,
+    SearchDirectionTooSmall = "search_direction_too_small": 3,
     /// The variables grow without bound.
-    Diverging,
+    Diverging = "diverging": 4,
     /// The observer or Ctrl-C asked to stop.
-    Interrupted,
+    Interrupted = "interrupted": 5,
     /// A feasible point of a square problem was found.
-    FeasiblePoint,
+    FeasiblePoint = "feasible_point": 6,
     /// The iterations allowed are used up.
-    IterationLimit,
+    IterationLimit = "iteration_limit": -1,
     /// The time allowed is used up.
-    TimeLimit,
+    TimeLimit = "time_limit": -4 | -5,
     /// The restoration phase could not bring the iterate back towards feasibility.
-    RestorationFailed,
+    RestorationFailed = "restoration_failed": -2,
     /// The linear system of a step could not be solved.
-    StepFailed,
+    StepFailed = "step_failed": -3,
     /// A function or derivative could not be evaluated at a point where it has to exist.
-    InvalidNumber,
+    InvalidNumber = "invalid_number": -13,
     /// There are more equality constraints tha free variables.
-    TooFewDegreesOfFreedom,
+    TooFewDegreesOfFreedom = "too_few_degrees_of_freedom": -10,
     /// The options contradict each other or ask for something that this build of Ipopt does not have.
-    InvalidOption,
+    InvalidOption = "invalid_option": -12,
     /// The problem contradicts itself, for instance by a lower bound above its upper bound.
-    InvalidProblem,
+    InvalidProblem = "invalid_problem": -11,
     /// Memory ran out.
-    OutOfMemory,
+    OutOfMemory = "out_of_memory": -102,
     /// Ipopt failed for a reason of its own.
-    Internal,
+    Internal = "internal": _,
 }
 
 impl Status {
@@ -60,55 +88,6 @@ impl Status {
     #[must_use]
     pub const fn is_stationary(self) -> bool {
         self.is_optimal() || matches!(self, Self::SearchDirectionTooSmall)
-    }
-
-    /// One word in snake case, for `summary.json`.
-    #[must_use]
-    pub const fn word(self) -> &'static str {
-        match self {
-            Self::Solved => "solved",
-            Self::Acceptable => "acceptable",
-            Self::Infeasible => "infeasible",
-            Self::SearchDirectionTooSmall => "search_direction_too_small",
-            Self::Diverging => "diverging",
-            Self::Interrupted => "interrupted",
-            Self::FeasiblePoint => "feasible_point",
-            Self::IterationLimit => "iteration_limit",
-            Self::TimeLimit => "time_limit",
-            Self::RestorationFailed => "restoration_failed",
-            Self::StepFailed => "step_failed",
-            Self::InvalidNumber => "invalid_number",
-            Self::TooFewDegreesOfFreedom => "too_few_degrees_of_freedom",
-            Self::InvalidOption => "invalid_option",
-            Self::InvalidProblem => "invalid_problem",
-            Self::OutOfMemory => "out_of_memory",
-            Self::Internal => "internal",
-        }
-    }
-
-    /// Meaning of an `ApplicationReturnStatus`.
-    ///
-    /// The numbers are the same in all versions of Ipopt; −5, the limit of wall time, came with 3.14.
-    pub(crate) const fn from_code(code: i32) -> Self {
-        match code {
-            0 => Self::Solved,
-            1 => Self::Acceptable,
-            2 => Self::Infeasible,
-            3 => Self::SearchDirectionTooSmall,
-            4 => Self::Diverging,
-            5 => Self::Interrupted,
-            6 => Self::FeasiblePoint,
-            -1 => Self::IterationLimit,
-            -2 => Self::RestorationFailed,
-            -3 => Self::StepFailed,
-            -4 | -5 => Self::TimeLimit,
-            -10 => Self::TooFewDegreesOfFreedom,
-            -11 => Self::InvalidProblem,
-            -12 => Self::InvalidOption,
-            -13 => Self::InvalidNumber,
-            -102 => Self::OutOfMemory,
-            _ => Self::Internal,
-        }
     }
 }
 
@@ -148,10 +127,9 @@ impl Multipliers {
     pub(crate) fn scale(&mut self, factor: f64) {
         for values in [&mut self.constraints, &mut self.lower, &mut self.upper] {
             for value in values {
-                *value = if value.is_finite() {
-                    *value * factor
-                } else {
-                    0.0
+                *value = match value.is_finite() {
+                    true => *value * factor,
+                    false => 0.0,
                 };
             }
         }

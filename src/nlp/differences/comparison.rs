@@ -107,10 +107,8 @@ impl Comparison {
 
     /// Columns with entries above the tolerance.
     pub(super) fn doubted(&self) -> Vec<usize> {
-        let far = self
-            .pairs
-            .iter()
-            .filter(|pair| self.error(pair) > TOLERANCE);
+        let pairs = self.pairs.iter();
+        let far = pairs.filter(|pair| self.error(pair) > TOLERANCE);
         far.map(|pair| pair.column).collect()
     }
 

@@ -117,11 +117,7 @@ pub fn check_along(
 }
 
 /// The derivatives of a program at a point, compared with differences.
-struct Derivatives {
-    gradient: Comparison,
-    jacobian: Comparison,
-    hessian: Comparison,
-}
+struct Derivatives([(Matrix, Comparison); 3]);
 
 impl Derivatives {
     /// Evaluates them; `None` where `stop` says so before they are all there.
@@ -151,24 +147,25 @@ impl Derivatives {
         jacobian.add_linear_terms(x);
         go_on()?;
         let terms = lagrangian.term_sizes(&here);
-        Some(Self {
-            gradient,
-            jacobian,
-            hessian: Comparison::new(&nlp.hessian_structure(), &hessian, terms, n),
-        })
+        let hessian = Comparison::new(&nlp.hessian_structure(), &hessian, terms, n);
+        Some(Self([
+            (Matrix::Gradient, gradient),
+            (Matrix::Jacobian, jacobian),
+            (Matrix::Hessian, hessian),
+        ]))
     }
 
     /// Compares the entries of column j.
     fn compare(&mut self, j: usize, slope: &Slope) {
-        self.gradient.compare(j, 0, |_| slope.objective());
-        self.jacobian.compare(j, 0, |i| slope.constraint(i));
-        self.hessian.compare(j, j, |i| slope.lagrangian(i));
+        for (matrix, of) in &mut self.0 {
+            let first = if *matrix == Matrix::Hessian { j } else { 0 };
+            of.compare(j, first, |i| slope.of(*matrix, i));
+        }
     }
 
     /// Columns with an entry above the tolerance, ascending.
     fn doubted(&self) -> Vec<usize> {
-        let all = [&self.gradient, &self.jacobian, &self.hessian];
-        let mut doubted: Vec<usize> = all.into_iter().flat_map(Comparison::doubted).collect();
+        let mut doubted: Vec<usize> = self.0.iter().flat_map(|(_, of)| of.doubted()).collect();
         doubted.sort_unstable();
         doubted.dedup();
         doubted
@@ -176,22 +173,27 @@ impl Derivatives {
 
     /// Compares the doubted entries of column j with a shorter step.
     fn compare_again(&mut self, j: usize, slope: &Slope) {
-        self.gradient.compare_again(j, |_| slope.objective());
-        self.jacobian.compare_again(j, |i| slope.constraint(i));
-        self.hessian.compare_again(j, |i| slope.lagrangian(i));
+        for (matrix, of) in &mut self.0 {
+            of.compare_again(j, |i| slope.of(*matrix, i));
+        }
     }
 
     /// Reports the greatest errors and the wrong entries.
     fn judge(&self, nlp: &dyn Nlp, report: &mut Report) {
+        for (matrix, of) in &self.0 {
+            let name = |i: usize| match matrix {
+                Matrix::Gradient => "objective".to_owned(),
+                Matrix::Jacobian => nlp.constraint_name(i),
+                Matrix::Hessian => nlp.variable_name(i),
+            };
+            let greatest = of.judge(*matrix, name, nlp, &mut report.wrong);
+            match matrix {
+                Matrix::Gradient => report.gradient = greatest,
+                Matrix::Jacobian => report.jacobian = greatest,
+                Matrix::Hessian => report.hessian = greatest,
+            }
+        }
         let wrong = &mut report.wrong;
-        let objective = |_| "objective".to_owned();
-        report.gradient = self.gradient.judge(Matrix::Gradient, objective, nlp, wrong);
-        let constraint = |i| nlp.constraint_name(i);
-        report.jacobian = self
-            .jacobian
-            .judge(Matrix::Jacobian, constraint, nlp, wrong);
-        let variable = |i| nlp.variable_name(i);
-        report.hessian = self.hessian.judge(Matrix::Hessian, variable, nlp, wrong);
         wrong.sort_by(|a, b| b.error.total_cmp(&a.error));
         wrong.truncate(LISTED);
     }
@@ -253,12 +255,8 @@ impl DirectionSample {
     }
 
     fn exists(&self) -> bool {
-        let values = [self.objective];
-        values
-            .iter()
-            .chain(&self.constraints)
-            .chain(&self.lagrangian)
-            .all(|value| value.is_finite())
+        let mut values = self.constraints.iter().chain(&self.lagrangian);
+        self.objective.is_finite() && values.all(|value| value.is_finite())
     }
 }
 
@@ -291,16 +289,14 @@ impl Slope {
         })
     }
 
-    fn objective(&self) -> f64 {
-        (self.ahead.objective - self.behind.objective) / self.width
-    }
-
-    fn constraint(&self, i: usize) -> f64 {
-        (self.ahead.constraints[i] - self.behind.constraints[i]) / self.width
-    }
-
-    fn lagrangian(&self, i: usize) -> f64 {
-        (self.ahead.lagrangian[i] - self.behind.lagrangian[i]) / self.width
+    /// Of the value whose derivatives are in row i of a matrix.
+    fn of(&self, matrix: Matrix, i: usize) -> f64 {
+        let value = |of: &DirectionSample| match matrix {
+            Matrix::Gradient => of.objective,
+            Matrix::Jacobian => of.constraints[i],
+            Matrix::Hessian => of.lagrangian[i],
+        };
+        (value(&self.ahead) - value(&self.behind)) / self.width
     }
 }
 

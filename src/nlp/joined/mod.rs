@@ -75,10 +75,8 @@ impl<N: Nlp> Joined<N> {
     /// Adds the next program.
     fn add(&mut self, name: String, program: N) {
         let number = self.parts.len();
-        let (columns, rows) = (
-            self.places.columns[number].clone(),
-            self.places.rows(number),
-        );
+        let columns = self.places.columns[number].clone();
+        let rows = self.places.rows(number);
         let Bounds { lower, upper } = program.constraints();
         self.constraints.lower.extend(lower);
         self.constraints.upper.extend(upper);
