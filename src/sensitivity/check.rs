@@ -48,11 +48,8 @@ fn of_duration(
     boundary: &BoundaryConditions,
 ) -> Option<&'static str> {
     let given = control.given.values().all(|signal| signal.is_constant());
-    let joints = system
-        .joints
-        .iter()
-        .filter_map(|joint| joint.motion.as_ref());
-    let is_function = control.course.is_some() || !given || joints.count() > 0;
+    let moves = system.joints.iter().any(|joint| joint.motion.is_some());
+    let is_function = control.course.is_some() || !given || moves;
     let mut limits = boundary.limits.list.iter();
     let is_rate = limits.any(|one| {
         let quantity = &one.quantity;

@@ -140,8 +140,7 @@ impl MarkerSlopes {
     /// Derivatives at an instant with unknowns z.
     pub(super) fn new(model: &Model, z: &[f64]) -> Self {
         let map = &model.action.map;
-        let mut instant = map.placed(z);
-        map.tangent(&mut instant);
+        let instant = map.placed(z);
         let mut row = vec![0.0; map.unknowns()];
         let mut slopes = |vector: usize, axis: usize| {
             let mut along = Vector3::zeros();

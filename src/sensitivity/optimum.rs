@@ -63,12 +63,8 @@ pub fn sensitivities(
     let markers = instants.map(|z| MarkerSlopes::new(&opened.model, z));
     let markers: Vec<MarkerSlopes> = markers.collect();
     let (mut list, mut refused) = (Vec::new(), Vec::new());
-    for (varied, direction) in opened
-        .control
-        .varied
-        .iter()
-        .zip(mem::take(&mut of.directions))
-    {
+    let directions = mem::take(&mut of.directions);
+    for (varied, direction) in opened.control.varied.iter().zip(directions) {
         match direction.and_then(|direction| of.kernel.along(&direction)) {
             Ok(derivative) => list.push(of.sensitivity(varied, derivative, &markers)),
             Err(reason) => refused.push((varied.name.clone(), reason)),

@@ -158,7 +158,13 @@ impl Opened {
         out.multipliers.reset(counts[0], counts[1]);
         let mut places = all.columns.iter().enumerate();
         for (number, column) in columns.iter().enumerate() {
-            let column = self.shifted(*column);
+            let column = match *column {
+                Column::Interval { k, s } => {
+                    let s = self.shifted(s);
+                    Column::Interval { k, s }
+                }
+                other => other,
+            };
             let place = places.find(|(_, one)| **one == column);
             let (place, _) = place.ok_or_else(missing)?;
             let scale = program.column_scale(place);
@@ -183,39 +189,26 @@ impl Opened {
         Ok(out)
     }
 
-    /// A column of the solved program as one of the opened one: parameters stand before potentials.
-    fn shifted(&self, column: Column) -> Column {
-        let mut constants = self
-            .model
-            .variables
-            .range(Role::Parameter)
-            .skip(self.sought);
-        let (first, more) = (constants.next(), constants.count() + 1);
-        match (column, first) {
-            (Column::Interval { k, s }, Some(first)) if s >= first => {
-                Column::Interval { k, s: s + more }
-            }
-            (other, _) => other,
+    /// The number here of a scalar of the solved program: parameters stand before potentials.
+    fn shifted(&self, s: usize) -> usize {
+        let parameters = self.model.variables.range(Role::Parameter);
+        let first = parameters.start + self.sought;
+        if s >= first {
+            s + parameters.end - first
+        } else {
+            s
         }
     }
 
     fn is_same_row(&self, solved: &Row, opened: &Row, program: &Transcription<'_>) -> bool {
         match (*solved, *opened) {
             (Row::Interval { k, s }, Row::Interval { .. }) => {
-                let Column::Interval { k, s } = self.shifted(Column::Interval { k, s }) else {
-                    return false;
-                };
+                let s = self.shifted(s);
                 *opened == Row::Interval { k, s }
             }
-            (
-                Row::Limit { limit, k },
-                Row::Limit {
-                    limit: other,
-                    k: at,
-                },
-            ) => {
+            (Row::Limit { limit, k }, Row::Limit { limit: own, k: at }) => {
                 let known: &BoundedQuantity = &self.solved.limits[limit];
-                k == at && known == program.limit(other)
+                k == at && known == program.limit(own)
             }
             (solved, opened) => solved == opened,
         }

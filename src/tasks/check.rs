@@ -222,9 +222,8 @@ fn wrong_derivative(entry: &WrongEntry, effects: Vec<String>) -> WrongDerivative
 /// The size of each variable as the solver sees it: that of an element for the coordinates of its nodes.
 fn sizes(program: &Transcription<'_>, model: &Model) -> Vec<f64> {
     let blocks = model.solids.iter().map(|block| &block.solid.mesh);
-    let edge = blocks
-        .map(Mesh::shortest_edge)
-        .fold(f64::INFINITY, f64::min);
+    let edges = blocks.map(Mesh::shortest_edge);
+    let edge = edges.fold(f64::INFINITY, f64::min);
     let size = (edge / model.length()).min(1.0);
     let nodes = model.action.map.nodes();
     let of = |column: &Column| match *column {
@@ -303,7 +302,8 @@ fn as_control(task: Task, system: &System) -> Control {
         Task::Control(control) => *control,
         Task::Motions(_) => unreachable!("checked motion by motion"),
         Task::Simulate(simulation) => {
-            let zero_inputs = simulation.analysis(system, simulation.step).zero_inputs;
+            let analysis = simulation.analysis(system, simulation.step);
+            let zero_inputs = analysis.zero_inputs.into_iter();
             let Simulation {
                 step,
                 start,
@@ -314,7 +314,6 @@ fn as_control(task: Task, system: &System) -> Control {
             let row = voltages.at(0.0).to_vec();
             Control {
                 given: zero_inputs
-                    .into_iter()
                     .map(|source| (source, Signal::Constant(0.0)))
                     .collect(),
                 ..without_goal(start, step, row, coordinates)

@@ -89,10 +89,8 @@ pub fn equilibrium(
     remarks.warn("singular_loops", model.loops.warning.clone());
     remarks.warn("outside_domain", warnings::domain_note(&outside, false));
     let beyond = out_of_range(&model, &discrete);
-    remarks.warn(
-        "outside_range",
-        warnings::stretch_range_warning(&beyond, false),
-    );
+    let beyond = warnings::stretch_range_warning(&beyond, false);
+    remarks.warn("outside_range", beyond);
     remarks.warn("may_flutter", found.may_flutter.then(|| FLUTTER.to_owned()));
     if let Some((_, fallbacks)) = found.on_grids {
         remarks.warn("multigrid_stalled", infeasible::stalled_warning(fallbacks));

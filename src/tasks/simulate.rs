@@ -91,11 +91,11 @@ impl SimulationResult {
         let order = task.solving.integrator.order();
         let ends = [task.start.voltages(), None];
         let outside = warnings::outside_domain(&out_of_domain(model, discrete));
-        let neglected =
-            local_error_of(model, discrete, trajectory, order).map(|local| match self.stopped {
-                None => warnings::confirmed(&self.simulated, task, trajectory, local),
-                Some(_) => local,
-            });
+        let local = local_error_of(model, discrete, trajectory, order);
+        let neglected = local.map(|local| match self.stopped {
+            None => warnings::confirmed(&self.simulated, task, trajectory, local),
+            Some(_) => local,
+        });
         let mut remarks = Remarks::default();
         remarks.note("start", task.start.notes().iter().cloned());
         remarks.note("moved_marker", moved_markers(system));
@@ -116,22 +116,16 @@ impl SimulationResult {
         remarks.note("step_divided", warnings::divided(task));
         remarks.warn("outside_domain", warnings::domain_note(&outside, true));
         let beyond = out_of_range(model, discrete);
-        remarks.warn(
-            "outside_range",
-            warnings::stretch_range_warning(&beyond, true),
-        );
+        let beyond = warnings::stretch_range_warning(&beyond, true);
+        remarks.warn("outside_range", beyond);
         remarks.note("stops", infeasible::stop_notes(system, trajectory));
         remarks.warn("coarse_steps", warnings::warning(neglected, discrete, task));
         remarks.warn("tolerance_exceeded", warnings::beyond(*error, task));
-        let unconfirmed = self
-            .simulated
-            .unconfirmed
-            .filter(|_| self.stopped.is_none());
+        let unconfirmed = self.simulated.unconfirmed;
+        let unconfirmed = unconfirmed.filter(|_| self.stopped.is_none());
         remarks.warn(STOPPED_EARLY, unconfirmed.map(warnings::unconfirmed));
-        remarks.warn(
-            "multigrid_stalled",
-            infeasible::stalled_warning(discrete.report.fallbacks),
-        );
+        let stalled = infeasible::stalled_warning(discrete.report.fallbacks);
+        remarks.warn("multigrid_stalled", stalled);
         remarks.warn("energy_balance", warnings::unbalanced(discrete));
         Assessment {
             exchange: EnergyExchange::new(&model.system, trajectory, ends),
@@ -251,19 +245,19 @@ pub(super) fn afterwards(task: &Simulation) -> Option<String> {
     let named = solution.as_ref().map(|path| path.display().to_string());
     let of_solution = named.is_some();
     let source = named.unwrap_or_else(|| "the table".to_owned());
-    (task.duration > end * (1.0 + 1e-9)).then(|| match afterwards {
+    let is_longer = task.duration > end * (1.0 + 1e-9);
+    let end = end / 1e3;
+    is_longer.then(|| match afterwards {
         Afterwards::Held if of_solution => {
-            format!("after {} s the voltages that hold the goal of {source} are held", end / 1e3)
+            format!("after {end} s the voltages that hold the goal of {source} are held")
         }
-        Afterwards::Held => format!("after {} s the voltages of \"hold\" are held", end / 1e3),
-        Afterwards::OfLastInterval if of_solution => format!(
-            "after {} s the voltages of the last interval are held: {source} has no \"hold\", voltages that hold its goal",
-            end / 1e3
-        ),
-        Afterwards::OfLastInterval => format!(
-            "after {} s the voltages of the last interval are held: {source} has no \"hold\"",
-            end / 1e3
-        ),
+        Afterwards::Held => format!("after {end} s the voltages of \"hold\" are held"),
+        Afterwards::OfLastInterval => {
+            let goal = if of_solution { ", voltages that hold its goal" } else { "" };
+            format!(
+                "after {end} s the voltages of the last interval are held: {source} has no \"hold\"{goal}"
+            )
+        }
     })
 }
 
@@ -327,24 +321,22 @@ pub fn disturbed(
     };
     for Disturbed { size, system, task } in parts {
         let simulated;
-        let found = match *size == WHOLE {
-            true => whole,
-            false => {
-                let request = SimulationRequest {
-                    seconds: seconds.map(|limit| limit - began.elapsed().as_secs_f64()),
-                    ..SimulationRequest::default()
-                };
-                match simulate(system, task, request, go_on) {
-                    Err(WorkflowError::Stopped(Stopped(status))) => {
-                        out.left_out.push(not_whole(*size));
-                        out.stopped = Some(status);
-                        continue;
-                    }
-                    found => simulated = found?,
+        let mut found = whole;
+        if *size != WHOLE {
+            let request = SimulationRequest {
+                seconds: seconds.map(|limit| limit - began.elapsed().as_secs_f64()),
+                ..SimulationRequest::default()
+            };
+            simulated = match simulate(system, task, request, go_on) {
+                Err(WorkflowError::Stopped(Stopped(status))) => {
+                    out.left_out.push(not_whole(*size));
+                    out.stopped = Some(status);
+                    continue;
                 }
-                &simulated
-            }
-        };
+                found => found?,
+            };
+            found = &simulated;
+        }
         out.stopped = out.stopped.or(found.stopped);
         if let Some(failure) = &found.simulated.failure {
             out.left_out.push(format!(

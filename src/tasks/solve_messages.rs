@@ -50,8 +50,7 @@ pub(crate) fn stopped_after(first: Status, stopped: Status) -> String {
         _ => "the time allowed was used up",
     };
     format!(
-        "{reason} while other starts were tried; the first start ended {}; the files hold its last iterate",
-        first.word()
+        "{reason} while other starts were tried; the first start ended {first}; the files hold its last iterate"
     )
 }
 
@@ -66,11 +65,8 @@ pub(crate) fn cut_short(stopped: Status) -> String {
 /// Describes the changes of an earlier solution that serves as a guess.
 pub(crate) fn carried(carried: &Carried) -> Vec<String> {
     let stretched = carried.stretched.map(|[from, to]| {
-        format!(
-            "the guess lasts {} s; it was stretched in time to {} s",
-            from / 1e3,
-            to / 1e3
-        )
+        let [from, to] = [from / 1e3, to / 1e3];
+        format!("the guess lasts {from} s; it was stretched in time to {to} s")
     });
     let simulated = carried.simulated.then(|| {
         "the earlier solution does not tell where the nodes of these finite elements are; the guess is the motion under its voltages"
@@ -100,9 +96,8 @@ pub(crate) fn ends(values: &[FinalValue]) -> Vec<String> {
     if order.len() > TOLD {
         let farther = |one: &FinalValue| {
             let others = values.iter().filter(|other| other.unit == one.unit);
-            others
-                .filter(|other| other.deviation > one.deviation)
-                .count()
+            let farther = others.filter(|other| other.deviation > one.deviation);
+            farther.count()
         };
         order.sort_by_key(|one| farther(one));
     }

@@ -100,14 +100,10 @@ pub fn effect_counts(model: &Model, control: Option<&Control>, spent: f64) -> Ve
             is_unknown,
         }
     };
+    let scalars = model.variables.of(Time::Interval);
     let unknowns = Unknowns {
         coordinates: model.coordinate_count(),
-        scalars: model
-            .variables
-            .of(Time::Interval)
-            .iter()
-            .map(scalar)
-            .collect(),
+        scalars: scalars.iter().map(scalar).collect(),
         matrix,
     };
     let times = measured_times(model, spent);

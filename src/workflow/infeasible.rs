@@ -11,7 +11,7 @@ use crate::model::components::Tendon;
 use crate::model::system::JointKind;
 use crate::model::{Component, Model, System, joint_unit};
 use crate::nlp::Status;
-use crate::workflow::optimum::{Optimum, Shortest};
+use crate::workflow::optimum::{Active, Optimum, Shortest};
 use std::ops::ControlFlow;
 
 /// Maximum number of bounds listed.
@@ -24,13 +24,7 @@ const SLOW: f64 = 1e-4;
 /// Explains a problem whose solve found no motion, line by line.
 pub(crate) fn explain(control: &Control, optimum: &Optimum) -> Vec<String> {
     let mut lines: Vec<String> = miss(control, optimum).into_iter().collect();
-    lines.extend(
-        optimum
-            .active
-            .iter()
-            .take(TOLD)
-            .map(|active| active.message()),
-    );
+    lines.extend(optimum.active.iter().take(TOLD).map(Active::message));
     lines.extend(changes(control, optimum));
     lines.extend(kinks(optimum));
     lines
@@ -111,24 +105,16 @@ fn miss(control: &Control, optimum: &Optimum) -> Option<String> {
     if failure.is_some() || discrete.intervals() < n {
         return None;
     }
-    let placed = |z: &[f64]| {
-        let mut instant = model.action.map.instant();
-        instant.z[..z.len()].copy_from_slice(z);
-        model.action.map.place(&mut instant);
-        instant
-    };
-    let [end, before] = [n, n - 1].map(|k| placed(&discrete.z[k]));
+    let [end, before] = [n, n - 1].map(|k| model.action.map.placed(&discrete.z[k]));
     let parts = distances(model, boundary, &control.goal, &end);
     let (what, _) = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
     let speed = |v: &usize| (end.x[*v] - before.x[*v]).norm() / h;
     let fastest = model.markers.iter().map(speed).fold(0.0, f64::max);
     let is_slow = fastest < SLOW * model.length() / motion.times[n];
+    let speed = significant(fastest, 2);
     let moves = match is_slow {
         true => String::new(),
-        false => format!(
-            ", and markers still move at {} m/s",
-            significant(fastest, 2)
-        ),
+        false => format!(", and markers still move at {speed} m/s"),
     };
     Some(format!("simulated under the inputs found, {what}{moves}"))
 }
@@ -172,9 +158,7 @@ fn distances(
             let Some(rest) = &boundary.goal.rest else {
                 return Vec::new();
             };
-            let mut there = model.action.map.instant();
-            there.z.copy_from_slice(&rest.z);
-            model.action.map.place(&mut there);
+            let there = model.action.map.placed(&rest.z);
             let markers = 0..model.markers.len();
             let places = markers.map(|m| of_marker(m, &there.x[model.markers[m]].into()));
             let (asked, found) = (joints(&there), joints(end));
@@ -206,13 +190,11 @@ fn changes(control: &Control, optimum: &Optimum) -> Vec<String> {
         lines.push(format!("change: \"rate\": 0.002 in the objective; {jumps}"));
     }
     if lines.is_empty() && optimum.solution.status == Status::IterationLimit {
-        let rate = match control.objective.rate == 0.0 {
-            true => ", a cost of rate in the objective",
-            false => "",
-        };
-        lines.push(format!(
-            "change: more iterations, more intervals, another guess{rate}"
-        ));
+        let more = "change: more iterations, more intervals, another guess";
+        lines.push(match control.objective.rate == 0.0 {
+            true => format!("{more}, a cost of rate in the objective"),
+            false => more.to_owned(),
+        });
     }
     lines
 }
@@ -282,25 +264,19 @@ pub(crate) fn undecided(stopped: Option<Status>) -> String {
 pub(crate) fn stop_notes(system: &System, motion: &Trajectory) -> Vec<String> {
     let joints = system.joints.iter().filter(|joint| joint.has_coordinate());
     let units = motion.coordinates(system);
-    let passed = joints
-        .zip(units)
-        .enumerate()
-        .filter_map(|(u, (joint, of))| {
-            let stops = joint.stops?;
-            let beyond = motion.joints.iter().map(|row| stops.beyond(row[u]));
-            let (k, far) = beyond.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
-            let (far, unit) = match of.unit {
-                "rad" => (far.to_degrees(), "deg"),
-                other => (far, other),
-            };
-            (far > 0.0).then(|| {
-                format!(
-                    "{} is pressed into its stop by up to {} {unit}, at {} s",
-                    joint.name,
-                    significant(far, 3),
-                    significant(motion.times[k] / 1e3, 4)
-                )
-            })
-        });
+    let joints = joints.zip(units).enumerate();
+    let passed = joints.filter_map(|(u, (joint, of))| {
+        let stops = joint.stops?;
+        let beyond = motion.joints.iter().map(|row| stops.beyond(row[u]));
+        let (k, far) = beyond.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let (far, unit) = match of.unit {
+            "rad" => (far.to_degrees(), "deg"),
+            other => (far, other),
+        };
+        let (size, time) = (significant(far, 3), significant(motion.times[k] / 1e3, 4));
+        let name = &joint.name;
+        (far > 0.0)
+            .then(|| format!("{name} is pressed into its stop by up to {size} {unit}, at {time} s"))
+    });
     passed.collect()
 }

@@ -116,10 +116,8 @@ pub(crate) fn of_motion(model: &Model, steps: usize) -> Result<(), WorkflowError
 /// Its derivatives need more than there is.
 pub(crate) fn of_program(model: &Model, intervals: usize) -> Result<(), WorkflowError> {
     let derivatives = model.action.layout().values(1) as f64;
-    let unknowns: usize = [Time::Instant, Time::Interval]
-        .map(|time| model.variables.of(time).len())
-        .iter()
-        .sum();
+    let times = [Time::Instant, Time::Interval].into_iter();
+    let unknowns: usize = times.map(|time| model.variables.of(time).len()).sum();
     let what = format!(
         "a program of {intervals} intervals with {unknowns} unknowns and {derivatives} second derivatives each"
     );

@@ -59,30 +59,26 @@ pub(crate) fn prepare_together<'m>(
     task: &ControlTask<'_>,
     counted: Counted,
 ) -> Result<PreparedTogether<'m>, WorkflowError> {
-    let (mut programs, mut points) = (Vec::new(), Vec::new());
-    let (mut starts, mut carried) = (Vec::new(), Vec::new());
-    for motion in motions {
-        let ProgramMotion {
-            task: one,
-            model,
-            boundary,
-        } = *motion;
-        let prepared = prepare(model, boundary, one.control, one.earlier, counted);
-        let prepared = prepared.map_err(|error| error.of_motion(one.name))?;
-        let Prepared {
-            program,
-            point,
-            start,
-            carried: of_earlier,
-        } = prepared;
-        programs.push((one.name.to_owned(), program));
-        points.push(point);
-        starts.push(start);
-        carried.push(of_earlier);
-    }
-    let rest = states_of_rest(motions, &programs)
+    let prepared = motions.iter().map(|motion| {
+        let MotionTask {
+            control, earlier, ..
+        } = motion.task;
+        let prepared = prepare(motion.model, motion.boundary, control, earlier, counted);
+        prepared.map_err(|error| error.of_motion(motion.task.name))
+    });
+    let prepared = prepared.collect::<Result<Vec<_>, _>>()?;
+    let starts: Vec<Start> = prepared.iter().map(|one| one.start).collect();
+    let carried = prepared.iter().map(|one| one.carried).collect();
+    let parts = motions.iter().zip(prepared);
+    let parts = parts.map(|(motion, one)| ProgramPart {
+        name: motion.task.name.to_owned(),
+        program: one.program,
+        point: one.point,
+    });
+    let parts: Vec<ProgramPart<'m>> = parts.collect();
+    let rest = states_of_rest(motions, &parts)
         .map_err(|error| WorkflowError::boundary("control", &error))?;
-    let list = programs.iter().map(|(_, program)| program);
+    let list = parts.iter().map(|part| &part.program);
     let list: Vec<&Transcription<'_>> = list.chain(rest.iter().map(|one| &one.1.program)).collect();
     let beside = rest.iter().map(|(motion, one)| Beside {
         motion: *motion,
@@ -90,12 +86,7 @@ pub(crate) fn prepare_together<'m>(
     });
     let beside: Vec<Beside<'_>> = beside.collect();
     let shared = shared_variables(&list, &beside, task.shared_inputs)?;
-    let whole = Programs {
-        programs,
-        points,
-        rest,
-    };
-    let (program, point) = joined(whole, &shared, task.combined);
+    let (program, point) = joined(parts, rest, &shared, task.combined);
     Ok(PreparedTogether {
         point,
         start: common(&starts),
@@ -220,12 +211,12 @@ pub(crate) struct ProgramMotion<'m> {
 /// It is time to stop.
 pub(super) fn states_of_rest<'m>(
     motions: &[ProgramMotion<'m>],
-    programs: &[(String, Transcription<'m>)],
+    parts: &[ProgramPart<'m>],
 ) -> Result<Vec<(usize, RestProgram<'m>)>, BoundaryError> {
     let mut all = Vec::new();
-    for (number, (motion, (_, program))) in motions.iter().zip(programs).enumerate() {
+    for (number, (motion, part)) in motions.iter().zip(parts).enumerate() {
         let of = (motion.model, motion.boundary);
-        let own = rest_programs(program, of, motion.task.control)?;
+        let own = rest_programs(&part.program, of, motion.task.control)?;
         all.extend(own.into_iter().map(|one| (number, one)));
     }
     Ok(all)
@@ -240,31 +231,34 @@ pub(super) fn multipliers_of(places: &Places, number: usize, whole: &Multipliers
     }
 }
 
-/// Programs of motions with their points, and their states of rest.
-pub(super) struct Programs<'m> {
-    pub(super) programs: Vec<(String, Transcription<'m>)>,
-    pub(super) points: Vec<StartingPoint>,
-    pub(super) rest: Vec<(usize, RestProgram<'m>)>,
+/// The program of a motion, or of a state of rest of one, with its point.
+pub(super) struct ProgramPart<'m> {
+    pub(super) name: String,
+    pub(super) program: Transcription<'m>,
+    pub(super) point: StartingPoint,
 }
 
-/// Programs as one, and the point of all of them.
+/// Programs of motions and of their states of rest as one, and the point of all of them.
 pub(super) fn joined<'m>(
-    whole: Programs<'m>,
+    mut parts: Vec<ProgramPart<'m>>,
+    rest: Vec<(usize, RestProgram<'m>)>,
     shared: &[SharedVariable],
     combined: Combined,
 ) -> (Joined<Transcription<'m>>, StartingPoint) {
-    let Programs {
-        mut programs,
-        mut points,
-        rest,
-    } = whole;
-    let motions = programs.len();
+    let motions = parts.len();
     for (number, one) in rest {
-        let name = &programs[number].0;
+        let name = &parts[number].name;
         let of = if name.is_empty() { "" } else { ": " };
-        let name = format!("{name}{of}state of rest at the {}", one.end);
-        programs.push((name, one.program));
-        points.push(one.point);
+        parts.push(ProgramPart {
+            name: format!("{name}{of}state of rest at the {}", one.end),
+            program: one.program,
+            point: one.point,
+        });
+    }
+    let (mut programs, mut points) = (Vec::new(), Vec::new());
+    for part in parts {
+        programs.push((part.name, part.program));
+        points.push(part.point);
     }
     let program = Joined::new(programs, shared).with_objectives_of(motions);
     let mut program = match combined {

@@ -25,7 +25,9 @@ use crate::stop;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, solved};
 use crate::workflow::optimum::Budget;
-use crate::workflow::program::{ProgramMotion, Programs, joined, multipliers_of, states_of_rest};
+use crate::workflow::program::{
+    ProgramMotion, ProgramPart, joined, multipliers_of, states_of_rest,
+};
 use crate::workflow::remark::phase;
 use std::ops::ControlFlow;
 
@@ -97,20 +99,20 @@ impl Solves<'_, '_> {
             };
             phase("solving again, from the state that the first solution reached");
             let each = self.motions.iter().zip(&initial);
-            let program = each.map(|(motion, initial)| {
-                let ProgramMotion {
-                    task,
-                    model,
-                    boundary,
-                } = *motion;
+            let parts = each.map(|(motion, initial)| {
+                let (model, boundary, task) = (motion.model, motion.boundary, motion.task);
                 let program = Transcription::of_any(model, boundary, task.control, initial)?;
-                Ok::<_, BoundaryError>((task.name.to_owned(), program))
+                Ok::<_, BoundaryError>(ProgramPart {
+                    name: task.name.to_owned(),
+                    point: program.start(initial),
+                    program,
+                })
             });
             // What cannot be built in the time that is left leaves the solution as it is.
-            let Ok(programs) = program.collect::<Result<Vec<_>, _>>() else {
+            let Ok(parts) = parts.collect::<Result<Vec<_>, _>>() else {
                 break;
             };
-            let Ok(rest) = states_of_rest(self.motions, &programs) else {
+            let Ok(rest) = states_of_rest(self.motions, &parts) else {
                 break;
             };
             let options = Options {
@@ -118,15 +120,7 @@ impl Solves<'_, '_> {
                 start: Start::PRIMAL,
                 ..self.options.clone()
             };
-            let each = programs.iter().zip(&initial);
-            let points = each.map(|((_, program), initial)| program.start(initial));
-            let points: Vec<StartingPoint> = points.collect();
-            let whole = Programs {
-                programs,
-                points,
-                rest,
-            };
-            let (program, point) = joined(whole, self.shared, self.combined);
+            let (program, point) = joined(parts, rest, self.shared, self.combined);
             self.solver = Solver::new(program, options);
             solution = self.solve(&point)?;
         }
@@ -142,12 +136,7 @@ impl Solves<'_, '_> {
             let discrete = part.decode(&program.places().values_of(number, &solution.x));
             let far = recentred(motion.model, &discrete);
             is_far |= far.is_some();
-            far.unwrap_or_else(|| InitialGuess {
-                h: discrete.times[1],
-                discrete,
-                costates: None,
-                carried: Carried::default(),
-            })
+            far.unwrap_or_else(|| guess(discrete))
         });
         let initial: Vec<InitialGuess> = initial.collect();
         is_far.then_some(initial)
@@ -212,16 +201,21 @@ pub(crate) fn recentred(model: &Model, discrete: &DiscreteTrajectory) -> Option<
             map.recentre(&mut instant);
             instant.z
         });
-        InitialGuess {
-            discrete: DiscreteTrajectory {
-                z: z.collect(),
-                ..discrete.clone()
-            },
-            h: discrete.times[1],
-            costates: None,
-            carried: Carried::default(),
-        }
+        guess(DiscreteTrajectory {
+            z: z.collect(),
+            ..discrete.clone()
+        })
     })
+}
+
+/// A guess of a motion as it is.
+fn guess(discrete: DiscreteTrajectory) -> InitialGuess {
+    InitialGuess {
+        h: discrete.times[1],
+        discrete,
+        costates: None,
+        carried: Carried::default(),
+    }
 }
 
 /// The better of two solves, with the iterations, evaluations and seconds of both.

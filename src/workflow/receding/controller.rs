@@ -101,10 +101,7 @@ impl<'h> RecedingHorizon<'h> {
         let shift = Shift::new(&program);
         let law = of.law();
         let model = of.model();
-        let (changes, rows) = (
-            vec![(0, 0.0); width],
-            vec![(0, 0.0); program.momentum.len()],
-        );
+        let [changes, rows] = [width, program.momentum.len()].map(|n| vec![(0, 0.0); n]);
         let x = vec![0.0; columns];
         let mut out = Self {
             iteration: Iteration::new(program, &x, &is_held, BARRIER * of.weight()),
@@ -149,11 +146,8 @@ impl<'h> RecedingHorizon<'h> {
         self.stay();
         for _ in 0..FIRST {
             self.factor();
-            let Residual {
-                equations,
-                gradient,
-            } = self.residual;
-            let is_met = equations < SMALL && gradient < SMALL;
+            let left = self.residual;
+            let is_met = left.equations < SMALL && left.gradient < SMALL;
             if self.prepared != Some(true) || is_met || stop::reason().is_some() {
                 break;
             }
@@ -164,10 +158,8 @@ impl<'h> RecedingHorizon<'h> {
 
     /// Prepares the step of the next interval: once, after its inputs went out.
     pub fn prepare(&mut self) {
-        if self
-            .answered
-            .is_some_and(|(interval, _)| interval == self.interval)
-        {
+        let answered = self.answered.map(|(interval, _)| interval);
+        if answered == Some(self.interval) {
             self.go_on();
         }
         if self.prepared.is_none() {
@@ -217,10 +209,7 @@ impl<'h> RecedingHorizon<'h> {
         if let Some((last, source)) = self.answered
             && (interval < self.next || interval == last || !time.is_finite())
         {
-            return Answer {
-                source,
-                inputs: &self.inputs,
-            };
+            return self.answer(source);
         }
         let is_leap = interval > self.interval + self.of.intervals();
         if is_leap || interval < self.interval {
@@ -239,6 +228,10 @@ impl<'h> RecedingHorizon<'h> {
         };
         self.state.sent(interval, &self.inputs);
         self.answered = Some((interval, source));
+        self.answer(source)
+    }
+
+    fn answer(&self, source: Source) -> Answer<'_> {
         Answer {
             source,
             inputs: &self.inputs,
@@ -278,11 +271,8 @@ impl<'h> RecedingHorizon<'h> {
             }
             self.stay();
             let Iteration { program, .. } = &mut self.iteration;
-            for (momentum, &c) in program
-                .momentum
-                .iter_mut()
-                .zip(&program.layout.steered.inert)
-            {
+            let inert = &program.layout.steered.inert;
+            for (momentum, &c) in program.momentum.iter_mut().zip(inert) {
                 *momentum = self.momenta[self.of.coordinates()[c]];
             }
             let full = &mut self.points[0];
@@ -377,6 +367,7 @@ impl Shift {
         let parts = program.layout.steered.parts;
         let n = program.layout.width();
         let (end, _) = program.layout.coordinates[(program.layout.intervals - 1) * n];
+        let between = program.between.iter().copied();
         Self {
             columns: successors(columns, |column| match column {
                 Column::Instant { k, i } => Column::Instant { k: k + parts, i },
@@ -392,12 +383,7 @@ impl Shift {
                 },
                 other => other,
             }),
-            between: program
-                .between
-                .iter()
-                .filter(|(_, [from, _], _)| *from >= end)
-                .copied()
-                .collect(),
+            between: between.filter(|(_, [from, _], _)| *from >= end).collect(),
             last: program.layout.last_inputs().collect(),
         }
     }

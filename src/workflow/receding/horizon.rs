@@ -184,10 +184,8 @@ impl Horizon {
         let mut program = self.program();
         program.begin = interval;
         let start = program.layout.coordinates.iter().zip(state);
-        let values: Vec<f64> = start
-            .take(self.coordinates().len())
-            .map(|((_, scale), v)| v / scale)
-            .collect();
+        let start = start.take(self.coordinates().len());
+        let values: Vec<f64> = start.map(|((_, scale), v)| v / scale).collect();
         let momenta = self.steered.momenta(&self.model, state);
         program.hold_start(&values, &momenta);
         let mut x = vec![0.0; program.variables().count()];
@@ -238,10 +236,8 @@ impl Horizon {
         let mut z = vec![self.boundary.start.z.clone(); steps + 1];
         for (k, z) in z.iter_mut().enumerate() {
             let state = &self.reference.at(k / parts).state;
-            self.coordinates()
-                .iter()
-                .zip(state)
-                .for_each(|(&i, value)| z[i] = *value);
+            let each = self.coordinates().iter().zip(state);
+            each.for_each(|(&i, value)| z[i] = *value);
         }
         let count = self.model.variables.of(Time::Interval).len();
         let mut scalars = vec![vec![0.0; count]; steps];

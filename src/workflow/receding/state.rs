@@ -115,15 +115,10 @@ impl<'h> Predicted<'h> {
         let time = self.law.h * interval as f64;
         let point = self.law.at(time);
         let size = self.values.len();
-        let off = self
-            .values
-            .iter()
-            .zip(&point.state)
-            .map(|(x, motion)| x - motion);
-        self.deviation
-            .iter_mut()
-            .zip(off)
-            .for_each(|(to, off)| *to = off);
+        let both = self.values.iter().zip(&point.state);
+        for (to, (x, motion)) in self.deviation.iter_mut().zip(both) {
+            *to = x - motion;
+        }
         if let Some([here, _]) = &self.estimates {
             let lasting = here.state()[size..].iter().chain(here.against());
             let of = self.deviation[size..].iter_mut().zip(lasting);

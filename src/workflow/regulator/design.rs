@@ -5,7 +5,7 @@
 //! At the end of an optimum bodies rest, and what muscles remember may go on: branches of rubber relax long after. Inputs that hold the goal lead to the
 //! state in which a step changes nothing, `f(x) = x`, which Newton's method finds from the end with the linearised step A: `(1 − A) δx = f(x) − x`.
 
-use crate::control::problem::Regulator;
+use crate::control::problem::{Control, Regulator};
 use crate::dynamics::{
     DiscreteTrajectory, LinearStep, Linearisation, StepError, StepInput, Stepper,
     momentum_derivatives, rates_of_momentum, step_inputs,
@@ -13,9 +13,42 @@ use crate::dynamics::{
 use crate::feedback::Costs;
 use crate::math::Vector;
 use crate::model::{Model, Time};
-use crate::workflow::regulator::Along;
+use crate::workflow::optimum::Optimum;
 use crate::workflow::regulator::regulated::{MOST, NoRegulator, RegulatedStep};
 use nalgebra::{DMatrix, DVector};
+
+/// An optimal motion along which feedback is designed.
+#[derive(Clone, Copy, Debug)]
+pub struct Along<'a> {
+    /// The model that moves.
+    pub model: &'a Model,
+    /// The problem that the motion solves.
+    pub control: &'a Control,
+    /// The motion as unknowns of the model.
+    pub discrete: &'a DiscreteTrajectory,
+    /// The momentum at its start.
+    pub momentum: &'a [f64],
+    /// Voltages that hold its goal, by source, where it is held.
+    pub rest: Option<&'a [f64]>,
+}
+
+impl<'a> Along<'a> {
+    /// An optimum of a problem.
+    pub fn new(
+        optimum: &'a Optimum,
+        discrete: &'a DiscreteTrajectory,
+        control: &'a Control,
+    ) -> Self {
+        let found = optimum.motion.hold.as_deref();
+        Self {
+            model: &optimum.model,
+            control,
+            discrete,
+            momentum: &optimum.boundary.start.momentum,
+            rest: found.or(optimum.boundary.rest[1].as_deref()),
+        }
+    }
+}
 
 /// Coordinates and momenta at an instant.
 #[derive(Clone)]
@@ -226,10 +259,7 @@ impl<'a> Design<'a> {
                 state: self.state_costs(at),
                 inputs: DMatrix::from_fn(u, u, |i, j| if i == j { input(i) } else { 0.0 }),
             },
-            places: self
-                .place_costs(at)
-                .view((0, 0), (coordinates, coordinates))
-                .into_owned(),
+            places: self.place_costs(at).resize(coordinates, coordinates, 0.0),
             gain: DMatrix::zeros(u, size),
             // Integral states have no constant-disturbance input.
             by_forces: by_forces.clone(),

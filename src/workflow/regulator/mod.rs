@@ -7,15 +7,14 @@ mod law;
 mod observer;
 mod regulated;
 
-use crate::control::problem::{Control, Regulator};
-use crate::dynamics::{DiscreteTrajectory, Linearisation};
+use crate::control::problem::Regulator;
+use crate::dynamics::Linearisation;
 use crate::feedback::{Costs, HeldGain, NotHeld, spectral_radius};
-use crate::model::Model;
 use crate::stop;
-use crate::workflow::optimum::Optimum;
 use crate::workflow::regulator::design::Design;
 use crate::workflow::regulator::law::Against;
 use crate::workflow::regulator::observer::reproduced;
+pub use design::Along;
 pub(crate) use design::rate_weight;
 pub(crate) use law::remembered;
 use nalgebra::DMatrix;
@@ -23,39 +22,6 @@ pub(crate) use regulated::NOTHING_HOLDS;
 pub use regulated::{
     NoRegulator, Regulated, RegulatedStep, RegulatorReport, Reproduced, WholeCosts,
 };
-
-/// An optimal motion along which feedback is designed.
-#[derive(Clone, Copy, Debug)]
-pub struct Along<'a> {
-    /// The model that moves.
-    pub model: &'a Model,
-    /// The problem that the motion solves.
-    pub control: &'a Control,
-    /// The motion as unknowns of the model.
-    pub discrete: &'a DiscreteTrajectory,
-    /// The momentum at its start.
-    pub momentum: &'a [f64],
-    /// Voltages that hold its goal, by source, where it is held.
-    pub rest: Option<&'a [f64]>,
-}
-
-impl<'a> Along<'a> {
-    /// An optimum of a problem.
-    pub fn new(
-        optimum: &'a Optimum,
-        discrete: &'a DiscreteTrajectory,
-        control: &'a Control,
-    ) -> Self {
-        let found = optimum.motion.hold.as_deref();
-        Self {
-            model: &optimum.model,
-            control,
-            discrete,
-            momentum: &optimum.boundary.start.momentum,
-            rest: found.or(optimum.boundary.rest[1].as_deref()),
-        }
-    }
-}
 
 /// The regulator of a motion.
 ///
