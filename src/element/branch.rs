@@ -15,8 +15,8 @@
 //! ∂²W/∂x_i∂q_m = s { ∂r_i/∂q_m − ⅓ ∂θ/∂q_m g_i }            ∂²W/∂q_m∂q_n = ½ s ∂²θ/∂q_m∂q_n.
 //! ```
 
-use super::branch_local::{COORDINATES, Output};
 use super::geometry::{ElementGeometry, Kinematics, load};
+use super::local::{COORDINATES, Output};
 use super::number::{Nine, Points, Three, apply, apply_plain, dot, scale, sums, transpose};
 
 /// Quantities at the Gauss points that energy, gradient and tangent share.
@@ -163,7 +163,7 @@ impl<N: Points> Branch<N> {
         }
         let half = self.s.scaled(0.5);
         for (m, slope) in self.slopes().into_iter().enumerate() {
-            out.row(m, (slope * half).each());
+            out.strain(m, (slope * half).each());
         }
     }
 
@@ -248,7 +248,7 @@ impl<N: Points> Branch<N> {
             for a in 0..3 {
                 column[a] = r[a].minus_product(third, node.g[a]) * self.s;
             }
-            out.coupling(i, m, [column[0].each(), column[1].each(), column[2].each()]);
+            out.strain_coupling(i, m, [column[0].each(), column[1].each(), column[2].each()]);
         }
     }
 
@@ -271,7 +271,7 @@ impl<N: Points> Branch<N> {
             (3, 3, dot(z, z) * one),
             (4, 4, dot(z, z) * two),
         ] {
-            out.inner(m, n, value.each());
+            out.strains(m, n, value.each());
         }
     }
 }

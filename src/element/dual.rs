@@ -11,24 +11,52 @@ pub(super) struct Dual<T> {
     pub(super) rate: T,
 }
 
-/// The values of numbers.
-#[inline(always)]
-pub(super) fn values<const N: usize>(numbers: [Dual<f64>; N]) -> [f64; N] {
-    let mut values = [0.0; N];
-    for i in 0..N {
-        values[i] = numbers[i].value;
-    }
-    values
+/// Numbers with their rates, taken apart.
+pub(super) trait Rated: Copy {
+    /// The same list of plain numbers.
+    type Plain: Copy + Default;
+
+    fn values(self) -> Self::Plain;
+    fn rates(self) -> Self::Plain;
 }
 
-/// The rates of numbers.
-#[inline(always)]
-pub(super) fn rates<const N: usize>(numbers: [Dual<f64>; N]) -> [f64; N] {
-    let mut rates = [0.0; N];
-    for i in 0..N {
-        rates[i] = numbers[i].rate;
+impl Rated for Dual<f64> {
+    type Plain = f64;
+
+    #[inline(always)]
+    fn values(self) -> f64 {
+        self.value
     }
-    rates
+
+    #[inline(always)]
+    fn rates(self) -> f64 {
+        self.rate
+    }
+}
+
+impl<R: Rated, const N: usize> Rated for [R; N]
+where
+    [R::Plain; N]: Default,
+{
+    type Plain = [R::Plain; N];
+
+    #[inline(always)]
+    fn values(self) -> Self::Plain {
+        let mut values = Self::Plain::default();
+        for i in 0..N {
+            values[i] = self[i].values();
+        }
+        values
+    }
+
+    #[inline(always)]
+    fn rates(self) -> Self::Plain {
+        let mut rates = Self::Plain::default();
+        for i in 0..N {
+            rates[i] = self[i].rates();
+        }
+        rates
+    }
 }
 
 /// Nodes at `x` that move along `w`.

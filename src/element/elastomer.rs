@@ -228,7 +228,7 @@ struct RatesTask<'a, F: Field, L, const NODES: usize> {
     potentials: &'a F::Potentials<NODES>,
     w: &'a [Vector; NODES],
     w_potentials: &'a F::Potentials<NODES>,
-    out: Pair<'a, F, NODES>,
+    out: Pair<'a, Local<F, NODES>>,
 }
 
 impl<F: Field, L: ElementLaw, const NODES: usize> Task for RatesTask<'_, F, L, NODES> {

@@ -1,6 +1,7 @@
-//! Energy of one hexahedron with its first and second derivatives by the arguments of its nodes.
+//! Energy of one hexahedron, and of a Maxwell branch of it, with their first and second derivatives by places and potentials of its nodes, and by
+//! viscous strains.
 
-use super::dual::{Dual, rates, values};
+use super::dual::{Dual, Rated};
 use super::law::Field;
 use crate::math::{Matrix, Vector};
 
@@ -34,12 +35,18 @@ impl<F: Field, const NODES: usize> Default for Local<F, NODES> {
 pub(super) trait Output<U> {
     fn energy(&mut self, value: U);
     fn force(&mut self, _i: usize, _value: [U; 3]) {}
-    fn charge(&mut self, _i: usize, _value: U) {}
     /// The block (i, j) and, transposed, (j, i).
     fn stiffness(&mut self, _i: usize, _j: usize, _value: [[U; 3]; 3]) {}
+    /// By potentials.
+    fn charge(&mut self, _i: usize, _value: U) {}
     fn coupling(&mut self, _i: usize, _j: usize, _value: [U; 3]) {}
     /// The entries (i, j) and (j, i).
     fn permittivity(&mut self, _i: usize, _j: usize, _value: U) {}
+    /// By viscous strains.
+    fn strain(&mut self, _m: usize, _value: [U; 8]) {}
+    fn strain_coupling(&mut self, _i: usize, _m: usize, _value: [[U; 8]; 3]) {}
+    /// The entries (m, n) and (n, m).
+    fn strains(&mut self, _m: usize, _n: usize, _value: [U; 8]) {}
 }
 
 /// An energy alone.
@@ -48,6 +55,18 @@ impl Output<Self> for f64 {
     fn energy(&mut self, value: Self) {
         *self = value;
     }
+}
+
+/// Writes the block (i, j) by its rows and, transposed, (j, i).
+#[inline(always)]
+pub(super) fn write_block<const NODES: usize>(
+    blocks: &mut [[Matrix; NODES]; NODES],
+    [i, j]: [usize; 2],
+    [a, b, c]: [[f64; 3]; 3],
+) {
+    // Columns one after the other, as nalgebra stores them.
+    blocks[j][i] = Matrix::new(a[0], b[0], c[0], a[1], b[1], c[1], a[2], b[2], c[2]);
+    blocks[i][j] = Matrix::new(a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]);
 }
 
 impl<F: Field, const NODES: usize> Output<f64> for Local<F, NODES> {
@@ -69,10 +88,8 @@ impl<F: Field, const NODES: usize> Output<f64> for Local<F, NODES> {
     }
 
     #[inline(always)]
-    fn stiffness(&mut self, i: usize, j: usize, [a, b, c]: [[f64; 3]; 3]) {
-        // Columns one after the other, as nalgebra stores them.
-        self.stiffness[j][i] = Matrix::new(a[0], b[0], c[0], a[1], b[1], c[1], a[2], b[2], c[2]);
-        self.stiffness[i][j] = Matrix::new(a[0], a[1], a[2], b[0], b[1], b[2], c[0], c[1], c[2]);
+    fn stiffness(&mut self, i: usize, j: usize, rows: [[f64; 3]; 3]) {
+        write_block(&mut self.stiffness, [i, j], rows);
     }
 
     #[inline(always)]
@@ -92,47 +109,134 @@ impl<F: Field, const NODES: usize> Output<f64> for Local<F, NODES> {
 }
 
 /// Variations, and their derivatives along a direction.
-pub(super) struct Pair<'a, F: Field, const NODES: usize> {
-    pub(super) plain: &'a mut Local<F, NODES>,
-    pub(super) along: &'a mut Local<F, NODES>,
+pub(super) struct Pair<'a, O> {
+    pub(super) plain: &'a mut O,
+    pub(super) along: &'a mut O,
 }
 
-impl<F: Field, const NODES: usize> Output<Dual<f64>> for Pair<'_, F, NODES> {
+impl<O> Pair<'_, O> {
+    #[inline(always)]
+    fn both<R: Rated>(&mut self, numbers: R, write: impl Fn(&mut O, R::Plain)) {
+        write(self.plain, numbers.values());
+        write(self.along, numbers.rates());
+    }
+}
+
+impl<O: Output<f64>> Output<Dual<f64>> for Pair<'_, O> {
     #[inline(always)]
     fn energy(&mut self, d: Dual<f64>) {
-        self.plain.energy(d.value);
-        self.along.energy(d.rate);
+        self.both(d, O::energy);
     }
 
     #[inline(always)]
     fn force(&mut self, i: usize, d: [Dual<f64>; 3]) {
-        self.plain.force(i, values(d));
-        self.along.force(i, rates(d));
-    }
-
-    #[inline(always)]
-    fn charge(&mut self, i: usize, d: Dual<f64>) {
-        self.plain.charge(i, d.value);
-        self.along.charge(i, d.rate);
+        self.both(d, |to, d| to.force(i, d));
     }
 
     #[inline(always)]
     fn stiffness(&mut self, i: usize, j: usize, d: [[Dual<f64>; 3]; 3]) {
-        self.plain
-            .stiffness(i, j, [values(d[0]), values(d[1]), values(d[2])]);
-        self.along
-            .stiffness(i, j, [rates(d[0]), rates(d[1]), rates(d[2])]);
+        self.both(d, |to, d| to.stiffness(i, j, d));
+    }
+
+    #[inline(always)]
+    fn charge(&mut self, i: usize, d: Dual<f64>) {
+        self.both(d, |to, d| to.charge(i, d));
     }
 
     #[inline(always)]
     fn coupling(&mut self, i: usize, j: usize, d: [Dual<f64>; 3]) {
-        self.plain.coupling(i, j, values(d));
-        self.along.coupling(i, j, rates(d));
+        self.both(d, |to, d| to.coupling(i, j, d));
     }
 
     #[inline(always)]
     fn permittivity(&mut self, i: usize, j: usize, d: Dual<f64>) {
-        self.plain.permittivity(i, j, d.value);
-        self.along.permittivity(i, j, d.rate);
+        self.both(d, |to, d| to.permittivity(i, j, d));
+    }
+
+    #[inline(always)]
+    fn strain(&mut self, m: usize, d: [Dual<f64>; 8]) {
+        self.both(d, |to, d| to.strain(m, d));
+    }
+
+    #[inline(always)]
+    fn strain_coupling(&mut self, i: usize, m: usize, d: [[Dual<f64>; 8]; 3]) {
+        self.both(d, |to, d| to.strain_coupling(i, m, d));
+    }
+
+    #[inline(always)]
+    fn strains(&mut self, m: usize, n: usize, d: [Dual<f64>; 8]) {
+        self.both(d, |to, d| to.strains(m, n, d));
+    }
+}
+
+/// Number of coordinates of the viscous strain at a point.
+pub const COORDINATES: usize = 5;
+
+/// A number at each of the eight Gauss points.
+pub(super) type Eight = [f64; 8];
+
+/// Energy W of a branch of one hexahedron with its derivatives; those by viscous strains have a value at each Gauss point.
+///
+/// A caller keeps one and has it filled again and again.
+#[derive(Clone, Debug)]
+pub struct BranchLocal<const NODES: usize = 8> {
+    /// W in mJ.
+    pub energy: f64,
+    /// ∂W/∂x_i in N.
+    pub forces: [Vector; NODES],
+    /// ∂W/∂q_m in mJ, `[m][point]`.
+    pub rows: [Eight; COORDINATES],
+    /// ∂²W/∂x_i∂x_j in N/mm, rows belong to i; both triangles are filled.
+    pub stiffness: [[Matrix; NODES]; NODES],
+    /// ∂²W/∂x_i∂q_m in N, `[i][m][component][point]`.
+    pub coupling: [[[Eight; 3]; COORDINATES]; NODES],
+    /// ∂²W/∂q_m∂q_n in mJ, `[m][n][point]`; both triangles are filled.
+    pub inner: [[Eight; COORDINATES]; COORDINATES],
+}
+
+impl<const NODES: usize> Default for BranchLocal<NODES> {
+    fn default() -> Self {
+        let none = [0.0; 8];
+        Self {
+            energy: 0.0,
+            forces: [Vector::zeros(); NODES],
+            rows: [none; COORDINATES],
+            stiffness: [[Matrix::zeros(); NODES]; NODES],
+            coupling: [[[none; 3]; COORDINATES]; NODES],
+            inner: [[none; COORDINATES]; COORDINATES],
+        }
+    }
+}
+
+impl<const NODES: usize> Output<f64> for BranchLocal<NODES> {
+    #[inline(always)]
+    fn energy(&mut self, value: f64) {
+        self.energy = value;
+    }
+
+    #[inline(always)]
+    fn force(&mut self, i: usize, value: [f64; 3]) {
+        self.forces[i] = Vector::from(value);
+    }
+
+    #[inline(always)]
+    fn strain(&mut self, m: usize, value: Eight) {
+        self.rows[m] = value;
+    }
+
+    #[inline(always)]
+    fn stiffness(&mut self, i: usize, j: usize, rows: [[f64; 3]; 3]) {
+        write_block(&mut self.stiffness, [i, j], rows);
+    }
+
+    #[inline(always)]
+    fn strain_coupling(&mut self, i: usize, m: usize, value: [Eight; 3]) {
+        self.coupling[i][m] = value;
+    }
+
+    #[inline(always)]
+    fn strains(&mut self, m: usize, n: usize, value: Eight) {
+        self.inner[m][n] = value;
+        self.inner[n][m] = value;
     }
 }

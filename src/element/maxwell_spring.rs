@@ -1,10 +1,10 @@
 //! The spring of a Maxwell branch of an element, and viscous strains that have relaxed.
 
 use super::branch::Branch;
-use super::branch_local::{BranchLocal, COORDINATES, Output, Pair};
 use super::dual::{Dual, moving};
 use super::geometry::ElementGeometry;
 use super::lanes::{Lanes, Task, dispatch};
+use super::local::{BranchLocal, COORDINATES, Output, Pair};
 use super::number::Points;
 use crate::math::{Matrix, Vector};
 use pulp::Simd;
@@ -60,21 +60,21 @@ impl MaxwellSpring {
         self.write::<2, NODES>(shape, x, strains, local);
     }
 
-    /// Fills `plain` as [`tangent`](Self::tangent) does, and `along` with the derivatives of all of it along a direction of places and
-    /// strains.
+    /// Fills `plain` as [`tangent`](Self::tangent) does, and `along` with the derivatives of all of it along the rates of places and strains,
+    /// which follow these.
     pub fn third<const NODES: usize>(
         &self,
         shape: &ElementGeometry<NODES>,
-        (x, strains): (&[Vector; NODES], &ViscousStrains),
-        (w, rates): (&[Vector; NODES], &ViscousStrains),
+        places: [&[Vector; NODES]; 2],
+        strains: [&ViscousStrains; 2],
         plain: &mut BranchLocal<NODES>,
         along: &mut BranchLocal<NODES>,
     ) {
         dispatch(Along {
             law: self,
             shape,
-            at: (x, strains),
-            direction: (w, rates),
+            places,
+            strains,
             out: Pair { plain, along },
         });
     }
@@ -147,20 +147,22 @@ impl<O: Output<f64>, const ORDER: usize, const NODES: usize> Task for Plain<'_, 
 struct Along<'a, const NODES: usize> {
     law: &'a MaxwellSpring,
     shape: &'a ElementGeometry<NODES>,
-    at: (&'a [Vector; NODES], &'a ViscousStrains),
-    direction: (&'a [Vector; NODES], &'a ViscousStrains),
-    out: Pair<'a, NODES>,
+    /// Places, and their rates; strains, and theirs.
+    places: [&'a [Vector; NODES]; 2],
+    strains: [&'a ViscousStrains; 2],
+    out: Pair<'a, BranchLocal<NODES>>,
 }
 
 impl<const NODES: usize> Task for Along<'_, NODES> {
     #[inline(always)]
     fn run<S: Simd, const K: usize>(mut self, unit: S) {
-        let x = moving(self.at.0, self.direction.0);
+        let [x, w] = self.places;
+        let x = moving(x, w);
         let mut q = [Dual::<Lanes<S, K>>::constant(unit, 0.0); COORDINATES];
         for m in 0..COORDINATES {
             q[m] = Dual {
-                value: Lanes::<S, K>::load(unit, &self.at.1[m]),
-                rate: Lanes::<S, K>::load(unit, &self.direction.1[m]),
+                value: Lanes::<S, K>::load(unit, &self.strains[0][m]),
+                rate: Lanes::<S, K>::load(unit, &self.strains[1][m]),
             };
         }
         let mu = self.law.shear_modulus;

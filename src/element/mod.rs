@@ -18,7 +18,6 @@
 )]
 
 mod branch;
-mod branch_local;
 mod dilatation;
 mod dual;
 mod elastomer;
@@ -33,13 +32,12 @@ mod number;
 mod variations;
 mod viscosity;
 
-pub use branch_local::{BranchLocal, COORDINATES};
 pub use dilatation::{Dilatation, second_derivatives_of_volume};
 pub use elastomer::Elastomer;
 pub use fields::{FieldPoint, Fields, SpatialField};
 pub use geometry::{ElementGeometry, Inverted};
 pub use isochoric::{ElementLaw, IsochoricLaw};
 pub use law::{Dielectric, ElectricDerivatives, Field, Passive, Volume};
-pub use local::Local;
+pub use local::{BranchLocal, COORDINATES, Local};
 pub use maxwell_spring::{MaxwellSpring, ViscousStrains, relaxed};
 pub use viscosity::{Viscosity, ViscousContraction, ViscousLocal};

@@ -21,7 +21,6 @@ mod impulse;
 mod inertia;
 mod kernel;
 mod laws;
-mod maxwell_elements;
 mod measured;
 mod node_blocks;
 mod paths;
@@ -31,12 +30,12 @@ mod scatter;
 mod stencil;
 mod sum;
 mod term;
-mod varied_elements;
 mod viscous_elements;
 
 pub use couplings::{BlockMask, Blocks, Coupling, Couplings, ParameterOrder};
 pub use finite_elements::{
     Electrical, ElementField, ElementFields, FiniteElement, FiniteElements, Variations,
+    VariedElement, VariedElements,
 };
 pub use formulas::{Element, Formulas};
 pub use group::Group;
@@ -44,7 +43,6 @@ pub use impulse::{Displacement, Impulse, Turn};
 pub use inertia::{Inertia, Mass};
 pub use kernel::{Kernel, Scatter};
 pub use laws::{LawElement, Laws, MOST_PARAMETERS, Move};
-pub use maxwell_elements::{MaxwellElement, MaxwellElements, POINTS};
 pub use measured::Curved;
 pub use node_blocks::{NodeBlocks, NodeVolume, Pressures, ScalarPlace, VectorPlace};
 pub use paths::{Path, Paths};
@@ -55,5 +53,6 @@ pub use sum::Sum;
 pub use term::{
     Functional, Horizon, Measure, Order, Outer, Output, Sample, SumDerivatives, Term, TermKind,
 };
-pub use varied_elements::{VariedElement, VariedElements};
-pub use viscous_elements::{ViscousElement, ViscousElements};
+pub use viscous_elements::{
+    MaxwellElement, MaxwellElements, POINTS, ViscousElement, ViscousElements,
+};

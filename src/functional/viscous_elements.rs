@@ -1,9 +1,13 @@
-//! Viscosity of finite elements: the virtual work `−Σ δx̄·f(x̄, v)` of the stress σ = η d.
+//! Viscosity of finite elements: the virtual work `−Σ δx̄·f(x̄, v)` of the stress σ = η d, and springs of Maxwell branches, energies W(x̄, q̄) of
+//! places of nodes and viscous strains at Gauss points.
 //!
-//! The forces are linear in the velocities, so the work over an interval does not depend on its length: there is nothing to
+//! Viscous forces are linear in the velocities, so the work over an interval does not depend on its length: there is nothing to
 //! derive by it.
 
-use crate::element::{ElementGeometry, Viscosity, ViscousContraction, ViscousLocal};
+use crate::element::{
+    BranchLocal, ElementGeometry, MaxwellSpring, Viscosity, ViscousContraction, ViscousLocal,
+    ViscousStrains,
+};
 use crate::functional::finite_elements::{Variations, middle};
 use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, Matrix, Vector};
@@ -138,6 +142,166 @@ impl<const NODES: usize> Kernel for ViscousElements<NODES> {
         order: Order,
         _: &Sample<'_>,
         variations: &ViscousVariations<NODES>,
+        to: &mut S,
+    ) {
+        variations.hand(order, to);
+    }
+}
+
+/// Gauss points of an element.
+pub const POINTS: usize = 8;
+
+/// One branch of a finite element.
+#[derive(Clone, Debug)]
+pub struct MaxwellElement<const NODES: usize = 8> {
+    /// Gradients of the shape functions, which all elements of one place share.
+    pub shape: Arc<ElementGeometry<NODES>>,
+    /// The law.
+    pub law: MaxwellSpring,
+    /// Vectors of the nodes.
+    pub nodes: [usize; NODES],
+    /// Vectors (z₁, z₂, ·) and (a, b, c) of the viscous strain at each Gauss point.
+    pub strains: [[usize; 2]; POINTS],
+}
+
+/// The kind of elements that are Maxwell branches of finite elements of `NODES` nodes; arguments are the nodes, then both vectors of each
+/// Gauss point.
+#[derive(Debug)]
+pub enum MaxwellElements<const NODES: usize = 8> {}
+
+/// Gauss point of an argument, and which of its vectors it is; `None` for a node.
+#[inline(always)]
+fn point<const NODES: usize>(i: usize) -> Option<(usize, usize)> {
+    i.checked_sub(NODES).map(|place| (place / 2, place % 2))
+}
+
+/// Coordinates of a vector of a Gauss point, with their components.
+#[inline(always)]
+fn coordinates(part: usize) -> impl Iterator<Item = (usize, usize)> {
+    let coordinates = if part == 0 { 0..2 } else { 2..5 };
+    coordinates.enumerate()
+}
+
+impl<const NODES: usize> MaxwellElement<NODES> {
+    fn strains(&self, vectors: [&[Vector]; 2]) -> ViscousStrains {
+        let mut strains = ViscousStrains::default();
+        for (g, parts) in self.strains.iter().enumerate() {
+            for (part, &v) in parts.iter().enumerate() {
+                let value = (vectors[0][v] + vectors[1][v]) * 0.5;
+                for (axis, m) in coordinates(part) {
+                    strains[m][g] = value[axis];
+                }
+            }
+        }
+        strains
+    }
+}
+
+impl<const NODES: usize> BranchLocal<NODES> {
+    /// Derivatives by a node and a vector of a Gauss point.
+    #[inline(always)]
+    fn mixed(&self, node: usize, (g, part): (usize, usize)) -> Matrix {
+        let mut block = Matrix::zeros();
+        for (axis, m) in coordinates(part) {
+            for a in 0..3 {
+                block[(a, axis)] = self.coupling[node][m][a][g];
+            }
+        }
+        block
+    }
+}
+
+/// The arguments are the nodes, then the vectors of the Gauss points.
+impl<const NODES: usize> Derivatives for BranchLocal<NODES> {
+    #[inline(always)]
+    fn force(&self, i: usize) -> Vector {
+        let Some((g, part)) = point::<NODES>(i) else {
+            return self.forces[i];
+        };
+        let mut force = Vector::zeros();
+        for (axis, m) in coordinates(part) {
+            force[axis] = self.rows[m][g];
+        }
+        force
+    }
+
+    #[inline(always)]
+    fn block(&self, i: usize, j: usize) -> Matrix {
+        match (point::<NODES>(i), point::<NODES>(j)) {
+            (None, None) => self.stiffness[i][j],
+            (None, Some(at)) => self.mixed(i, at),
+            (Some(at), None) => self.mixed(j, at).transpose(),
+            (Some((g, rows)), Some((_, columns))) => {
+                let mut block = Matrix::zeros();
+                for (a, m) in coordinates(rows) {
+                    for (b, n) in coordinates(columns) {
+                        block[(a, b)] = self.inner[m][n][g];
+                    }
+                }
+                block
+            }
+        }
+    }
+}
+
+impl<const NODES: usize> Kernel for MaxwellElements<NODES> {
+    type Element = MaxwellElement<NODES>;
+    type Storage = Variations<BranchLocal<NODES>>;
+
+    /// Strains of different points do not meet.
+    #[inline(always)]
+    fn couples(i: usize, j: usize) -> bool {
+        match (point::<NODES>(i), point::<NODES>(j)) {
+            (Some((g, _)), Some((other, _))) => g == other,
+            _ => true,
+        }
+    }
+
+    #[inline(always)]
+    fn vectors(_: &MaxwellElement<NODES>) -> usize {
+        NODES + 2 * POINTS
+    }
+
+    #[inline(always)]
+    fn vector(element: &MaxwellElement<NODES>, i: usize) -> VectorArg {
+        Stencil::Mid.of(match point::<NODES>(i) {
+            None => element.nodes[i],
+            Some((g, part)) => element.strains[g][part],
+        })
+    }
+
+    fn energy(element: &MaxwellElement<NODES>, sample: &Sample<'_>) -> f64 {
+        let x = middle(sample.vectors, &element.nodes);
+        let strains = element.strains(sample.vectors);
+        element.law.energy(&element.shape, &x, &strains)
+    }
+
+    fn prepare(
+        element: &MaxwellElement<NODES>,
+        order: Order,
+        sample: &Sample<'_>,
+        Variations { plain, along }: &mut Variations<BranchLocal<NODES>>,
+    ) {
+        let MaxwellElement { shape, law, .. } = element;
+        let x = middle(sample.vectors, &element.nodes);
+        let strains = element.strains(sample.vectors);
+        match order {
+            Order::Gradient => law.gradient(shape, &x, &strains, plain),
+            Order::Hessian => law.tangent(shape, &x, &strains, plain),
+            Order::Third => {
+                let w = middle(sample.along, &element.nodes);
+                let rates = element.strains(sample.along);
+                law.third(shape, [&x, &w], [&strains, &rates], plain, along);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn derivatives<S: Scatter>(
+        _: &MaxwellElement<NODES>,
+        order: Order,
+        _: &Sample<'_>,
+        variations: &Variations<BranchLocal<NODES>>,
         to: &mut S,
     ) {
         variations.hand(order, to);

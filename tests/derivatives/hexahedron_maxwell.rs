@@ -104,7 +104,7 @@ fn derivatives_of_the_spring_of_a_branch() {
         close("gradient", &flat(&local, &order).gradient, &plain.gradient);
         law.tangent(&shape, &x, &q, &mut local);
         close_flat("tangent", &flat(&local, &order), &plain);
-        law.third(&shape, (&x, &q), (&w, &w_q), &mut local, &mut rate);
+        law.third(&shape, [&x, &w], [&q, &w_q], &mut local, &mut rate);
         close_flat("third, plain", &flat(&local, &order), &plain);
         close_flat("third, along", &flat(&rate, &order), &along);
     }
