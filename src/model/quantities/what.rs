@@ -281,99 +281,85 @@ impl What {
         }
     }
 
+    /// Its time, words and unit, whatever its parts, and whatever of it is measured.
+    fn row(&self) -> (At, &'static str, &'static str) {
+        use At::{End, Instant, Middle, Start};
+        match self {
+            Self::Joint { .. } => (Instant, "coordinate", ""),
+            Self::Stretch(_) => (Instant, "stretch", ""),
+            Self::Tension(_) => (Middle, "tension", ""),
+            Self::Field(_) => (Middle, "electric field", ""),
+            Self::ChargedField(_) => (Instant, "electric field", ""),
+            Self::Current(_) => (Middle, "current", ""),
+            Self::Power(_) => (Middle, "power", ""),
+            Self::Charge(_) => (Instant, "charge", "mC"),
+            Self::MeanCharge(_) => (Middle, "charge", ""),
+            Self::Energy(_) => (End, "energy", ""),
+            Self::Capacitance(_) => (Instant, "capacitance", "mF"),
+            Self::ElectrodeVoltage(_) => (Middle, "voltage", "V"),
+            Self::Voltage(_) => (Middle, "voltage", ""),
+            Self::Reaction { of, .. } => match of {
+                Reaction::Force => (Start, "reaction force", ""),
+                Reaction::Torque => (Start, "reaction torque", ""),
+            },
+            Self::Place { axis, .. } => (Instant, AXES[*axis], "mm"),
+            Self::Speed(_) => (Middle, "speed", ""),
+            Self::Region { .. } => (Instant, "region", ""),
+            Self::Clearance { .. } => (Instant, "clearance", "mm"),
+            Self::Direction { .. } => (Instant, "direction", ""),
+            Self::PeakVoltage(_) => (Middle, "peak voltage", "kV"),
+            Self::PeakExcess { .. } => (Middle, "peak voltage", ""),
+            Self::Amount { amount, .. } => (Middle, "amount", amount.unit().0),
+        }
+    }
+
     /// Time at which it is read where nothing else is said.
     pub fn time(&self) -> At {
-        match self {
-            Self::Joint { .. }
-            | Self::Stretch(_)
-            | Self::ChargedField(_)
-            | Self::Charge(_)
-            | Self::Capacitance(_)
-            | Self::Place { .. }
-            | Self::Region { .. }
-            | Self::Clearance { .. }
-            | Self::Direction { .. } => At::Instant,
-            Self::Energy(_) => At::End,
-            Self::Reaction { .. } => At::Start,
-            Self::Tension(_)
-            | Self::Field(_)
-            | Self::Current(_)
-            | Self::Power(_)
-            | Self::MeanCharge(_)
-            | Self::ElectrodeVoltage(_)
-            | Self::Voltage(_)
-            | Self::Speed(_)
-            | Self::PeakVoltage(_)
-            | Self::PeakExcess { .. }
-            | Self::Amount { .. } => At::Middle,
-        }
+        self.row().0
     }
 
     /// Unit of its values or steps; none of a ratio, or of what is measured in a unit of its own.
     pub fn unit(&self, of: Of, system: &System) -> &'static str {
         match self {
             Self::Joint { joint, .. } => joint_unit(system, *joint),
-            Self::Capacitance(_) => "mF",
-            Self::Place { .. } | Self::Clearance { .. } => "mm",
-            Self::PeakVoltage(_) => "kV",
             Self::Tension(_) if of == Of::Step => "N ms",
-            Self::Charge(_) => "mC",
             Self::MeanCharge(_) if of == Of::Value => "mC",
-            Self::ElectrodeVoltage(_) => "V",
-            Self::Amount { amount, .. } => amount.unit().0,
-            _ => "",
+            _ => self.row().2,
         }
     }
 
     /// End of the name of its column where a cost names it; none of places and joint coordinates.
     pub fn column(&self, of: Of) -> Option<&'static str> {
-        Some(match self {
-            Self::Tension(_) => "tension",
-            Self::ChargedField(_) | Self::Field(FieldPlace::Muscle(_)) => "field",
-            Self::Current(_) => "current",
-            Self::Power(_) => "power",
-            Self::Joint { .. } if of == Of::Step => "rate",
-            Self::Speed(_) => "speed",
-            Self::Clearance { .. } => "clearance",
-            _ => return None,
-        })
+        match self {
+            Self::Joint { .. } if of == Of::Step => Some("rate"),
+            Self::ChargedField(_) | Self::Field(FieldPlace::Muscle(_)) => Some("field"),
+            Self::Tension(_)
+            | Self::Current(_)
+            | Self::Power(_)
+            | Self::Speed(_)
+            | Self::Clearance { .. } => Some(self.row().1),
+            _ => None,
+        }
     }
 
     /// Its name in limits, costs and recordings: `tension of muscle1`.
     pub fn words(&self, of: Of, system: &System) -> String {
-        let part = self
-            .parts()
-            .first()
-            .map(|&(kind, index)| kind.names(system).swap_remove(index));
-        let part = part.unwrap_or_default();
         let what = match self {
-            Self::Joint { .. } if of == Of::Value => "coordinate",
-            Self::Joint { .. } => "rate",
-            Self::Stretch(_) => "stretch",
-            Self::Tension(_) => "tension",
-            Self::Field(_) | Self::ChargedField(_) => "electric field",
-            Self::Current(_) => "current",
-            Self::Power(_) => "power",
-            Self::Charge(_) | Self::MeanCharge(_) => "charge",
-            Self::Energy(_) => "energy",
-            Self::Capacitance(_) => "capacitance",
+            Self::Joint { .. } if of != Of::Value => "rate",
             Self::Voltage(_) if of != Of::Value => "rate of the voltage",
-            Self::ElectrodeVoltage(_) | Self::Voltage(_) => "voltage",
-            Self::Reaction { of, .. } => match of {
-                Reaction::Force => "reaction force",
-                Reaction::Torque => "reaction torque",
-            },
-            Self::Place { axis, .. } => return format!("{} of marker {part}", AXES[*axis]),
-            Self::Speed(_) => "speed of marker",
-            Self::Clearance { .. } => "clearance of marker",
-            Self::Region { .. } => "region of marker",
-            Self::Direction { .. } => "direction",
-            Self::PeakVoltage(_) | Self::PeakExcess { .. } => "peak voltage",
             Self::Amount { muscles, amount } => return amount.words(muscles, system),
+            _ => self.row().1,
         };
-        match what.ends_with("marker") {
-            true => format!("{what} {part}"),
-            false => format!("{what} of {part}"),
+        match self.parts().first() {
+            None => format!("{what} of "),
+            Some(&(kind, index)) => {
+                let marker = if kind == PartKind::Marker {
+                    "marker "
+                } else {
+                    ""
+                };
+                format!("{what} of {marker}{}", kind.names(system)[index])
+            }
         }
     }
 }
