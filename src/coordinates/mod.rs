@@ -14,7 +14,6 @@
 //! where P′_l is the derivative of P along l. Over an interval P = diag(P_k, P_{k+1}), so the two-point structure in
 //! time survives, and the rows are the rows P(q_k)ᵀ(…) = 0 of DMOCC.
 
-mod charts;
 mod configuration;
 mod map;
 mod pattern;
@@ -26,7 +25,5 @@ pub use configuration::Configuration;
 pub use map::{CoordinateMap, Dependence, NodePlace};
 pub use pattern::{BlockPattern, StepPattern};
 pub use pull_back::Destination;
-pub use reduced::Interval;
-pub use reduced::Reduced;
-pub use reduced::Scratch;
+pub use reduced::{Interval, Reduced, Scratch};
 pub use tree::{CHART, LANES, Link, LinkKind, Tree};

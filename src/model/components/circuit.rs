@@ -43,28 +43,27 @@ fn circuit(
     internals: &Internals,
     terms: &mut Terms<'_>,
 ) {
-    let series = muscle.circuit.and_then(|circuit| circuit.resistance);
-    let Some(capacitance) = capacitance(muscle).filter(|_| series.is_some()) else {
+    let charge = internals.vector(InternalKind::Charge(index));
+    let (Some(circuit), Some(capacitance), Some(charge)) =
+        (muscle.circuit, capacitance(muscle), charge)
+    else {
         return;
     };
-    let Some(charge) = internals.vector(InternalKind::Charge(index)) else {
+    let (Some(series), charge) = (circuit.resistance, terms.vector(charge)) else {
         return;
     };
-    let (charge, unit) = (terms.vector(charge), capacitance.unit_of_charge());
     let mut constants = constants(muscle, index, terms);
     if let Some(law) = constants.flowing_charge() {
         let element = constants.element(law, [mid(span), mid(charge)], []);
         terms.add_law(CHARGES, WHY, &muscle.name, element);
     }
-    if let (Some(circuit), Some(series)) = (&muscle.circuit, series) {
-        let wires = Wires {
-            source: index,
-            series,
-            leakage: circuit.leakage,
-            unit,
-        };
-        add_circuit(&muscle.name, charge, terms.input(index), &wires, terms);
-    }
+    let wires = Wires {
+        source: index,
+        series,
+        leakage: circuit.leakage,
+        unit: capacitance.unit_of_charge(),
+    };
+    add_circuit(&muscle.name, charge, terms.input(index), &wires, terms);
 }
 
 /// A resistor in series with electrodes, and a leak parallel to them, whose resistances may be free.
@@ -120,25 +119,6 @@ pub(super) fn add_circuit(
     terms.add_law(RESISTANCE, WHY, name, element);
 }
 
-/// Adds the energy of a charge in its unit at a voltage, which is a scalar of the interval times a factor.
-pub(super) fn add_voltage(
-    term: &'static str,
-    name: &str,
-    charge: usize,
-    factor: f64,
-    voltage: usize,
-    terms: &mut Terms<'_>,
-) {
-    let element = Element {
-        energy: DeadLoad {
-            force: Vector::x() * factor,
-        },
-        vectors: [mid(charge)],
-        scalars: [voltage],
-    };
-    terms.add::<_, 4, 1, 1>(term, WHY, name, element);
-}
-
 const ELECTRODE_CHARGES: &str = "electrode charges";
 
 /// Terms of the circuits of electrodes.
@@ -153,14 +133,14 @@ pub(in crate::model) fn build_electrodes(
         };
         let (charge, unit) = (terms.vector(charge), of.unit_of_charge);
         let (potential, volts) = of.potential;
-        add_voltage(
-            ELECTRODE_CHARGES,
-            &of.name,
-            charge,
-            -(unit * volts),
-            potential,
-            terms,
-        );
+        // The energy of a charge in its unit at the potential, a scalar of the interval in its own unit.
+        let force = Vector::x() * -(unit * volts);
+        let element = Element {
+            energy: DeadLoad { force },
+            vectors: [mid(charge)],
+            scalars: [potential],
+        };
+        terms.add::<_, 4, 1, 1>(ELECTRODE_CHARGES, WHY, &of.name, element);
         let series = of.circuit.resistance.unwrap_or(0.0);
         let wires = Wires {
             source: of.source,

@@ -2,8 +2,8 @@
 
 use crate::element::FieldPoint;
 use crate::energy::{
-    Angle, AngleStep, Coefficient, Energy, Law, Multiple, PeakExcess, PositionComponent,
-    Projection, ProjectionStep, law,
+    Angle, AngleStep, Coefficient, Energy, Law, Multiple, OutsideBox, PeakExcess,
+    PositionComponent, Projection, ProjectionStep, SquaredDistance, law,
 };
 use crate::functional::{
     Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, LawElement, Laws,
@@ -14,13 +14,14 @@ use crate::math::{Jet, Number, Vector};
 use crate::model::analysis::Analysis;
 use crate::model::components::capacitance;
 use crate::model::components::muscle_constants::{MuscleConstants, charge_field};
-use crate::model::constants::free_parameters::Sought;
+use crate::model::constants::constant::Constant;
+use crate::model::constants::free_parameters::{MovedPoints, Read, Sought};
 use crate::model::layout::internal::Internals;
 use crate::model::layout::solid_block::SolidBlock;
 use crate::model::layout::variables::{Role, Variables};
 use crate::model::presolve::presolved::Presolved;
 use crate::model::quantities::quantity::Quantity;
-use crate::model::quantities::what::{At, FieldPlace, Pulling, What};
+use crate::model::quantities::what::{At, FieldPlace, Of, Pulling, Region, What};
 use crate::model::system::electrode_circuits::ElectrodeCircuit;
 use crate::model::system::joints::{JointCoordinate, JointReading};
 use crate::model::system::{Amount, System};
@@ -325,12 +326,12 @@ impl<'k> Reading<'k, '_> {
                 Amount::Volume => constants.volume(),
                 Amount::Mass => constants.mass(1.0)?,
             };
-            Some(constants.element(Constant(amount), [], []))
+            Some(constants.element(ConstantFormula(amount), [], []))
         };
         let elements: Vec<_> = muscles.iter().filter_map(element).collect();
         let is_moved = elements.iter().any(|one| !one.parameters.is_empty());
         let scale = 1.0 / self.quantity.unit;
-        let group = Group::<Laws<Constant<Coefficient>, 0, 0, 0>>::intervals;
+        let group = Group::<Laws<ConstantFormula<Coefficient>, 0, 0, 0>>::intervals;
         is_moved.then(|| Box::new(group("measure", scale, elements)) as Box<dyn Measure>)
     }
 
@@ -358,14 +359,83 @@ impl<'k> Reading<'k, '_> {
 
 /// A number without arguments.
 #[derive(Clone, Copy, Debug)]
-struct Constant<T>(T);
+struct ConstantFormula<T>(T);
 
-law!(Constant { 0 } of 0);
+law!(ConstantFormula { 0 } of 0);
 
-impl<T: Number> Energy<0, T> for Constant<T> {
+impl<T: Number> Energy<0, T> for ConstantFormula<T> {
     type Local<const ORDER: usize> = Jet<0, ORDER, T>;
 
     fn at<const ORDER: usize>(&self, _: &SVector<T, 0>, _: &SVector<T, 0>) -> Jet<0, ORDER, T> {
         Jet::constant(self.0)
+    }
+}
+
+impl Reading<'_, '_> {
+    /// Place, velocity or clearance of a marker.
+    pub(super) fn of_marker(&mut self) -> Made {
+        let origin = Vector::zeros();
+        match self.quantity.what {
+            What::Place { marker, axis } => {
+                let normal = Vector::ith(axis, 1.0);
+                self.marker(marker, PositionComponent { origin, normal })
+            }
+            // At most one inside a sphere, at least three only outside a box.
+            What::Region { marker, region } => match region {
+                Region::Sphere { centre, radius } => {
+                    let scale = radius.into();
+                    self.marker(marker, SquaredDistance { centre, scale })
+                }
+                Region::Box { min, max } => {
+                    let (centre, half) = ((min + max) * 0.5, (max - min) * 0.5);
+                    self.marker(marker, OutsideBox { centre, half })
+                }
+            },
+            What::Speed(marker) => {
+                let (centre, scale) = (origin, self.quantity.unit.into());
+                self.marker(marker, SquaredDistance { centre, scale })
+            }
+            What::Clearance { marker, plane } => {
+                let (reference, list) = (self.known.reference, self.vectors.list());
+                let body = self.known.presolved.carrier(plane.body);
+                let normal = MaterialVector::direction(body, &plane.normal, reference);
+                let foot = MaterialVector::point(body, &plane.point, reference);
+                let place = list[self.known.markers[marker]].clone();
+                let read = [normal, MaterialVector::span(&foot, &place)];
+                let read = read.map(|vector| self.vectors.index(vector));
+                self.instant(Projection, read)
+            }
+            _ => None,
+        }
+    }
+
+    /// Measure of a law of the place or velocity of a marker, with the parameters that move it in the intervals.
+    fn marker<L: Law<3>>(&mut self, marker: usize, law: L) -> Made {
+        let vector = self.known.markers[marker];
+        let read = match (&self.quantity.what, self.quantity.of) {
+            (What::Speed(_), _) => Stencil::Rate.of(vector),
+            (_, Of::Step) => Stencil::Difference.of(vector),
+            _ => self.at(vector),
+        };
+        let moved = match self.quantity.at {
+            At::Instant => Read::nothing(),
+            _ => self.moved_marker(marker),
+        };
+        self.law::<_, 3, 1, 0>(moved.element(law, [read], []))
+    }
+
+    /// The parameters that move a marker.
+    fn moved_marker(&mut self, marker: usize) -> Read {
+        let mut moved = self.known.sought.read();
+        let of = &self.known.presolved.system.markers[marker];
+        let point = MovedPoints {
+            parts: [1.0],
+            bodies: [of.point.body],
+            places: Some(&|_, axis| Constant::MarkerPlace(marker, axis)),
+        };
+        if of.solid.is_none() {
+            moved.moves(0, point, |vector| self.vectors.index(vector));
+        }
+        moved
     }
 }

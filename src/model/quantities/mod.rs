@@ -1,7 +1,6 @@
 //! Quantities that limits, costs and recordings name, and their measures.
 
 pub(super) mod charge_measures;
-pub(super) mod marker_measures;
 pub(super) mod measures;
 pub(super) mod pull;
 pub(super) mod quantity;

@@ -1,14 +1,21 @@
-//! Terms of elastic blocks: elements by kind.
+//! Terms of elastic blocks: masses and weights, elements by kind, and Maxwell branches.
 
-use crate::element::{ElementLaw, Viscosity};
-use crate::energy::NeoHooke;
-use crate::functional::ViscousElement;
-use crate::model::constants::constant::MaterialConstant;
+use crate::coordinates::Configuration;
+use crate::element::{ElementLaw, MaxwellSpring, Viscosity, ViscousStrains};
+use crate::energy::{KineticCoupling, KineticEnergy, MaxwellDamper, NeoHooke};
+use crate::functional::{Element, FiniteElement, Mass, MaxwellElement, POINTS, ViscousElement};
+use crate::kinematics::MaterialVector;
+use crate::math::Matrix;
+use crate::model::constants::constant::{Constant, MaterialConstant};
 use crate::model::layout::internal::Internals;
 use crate::model::layout::solid_block::SolidBlock;
 use crate::model::layout::solids::Solids;
+use crate::model::model::Model;
+use crate::model::system::maxwell::{MaxwellBranch, Response};
 use crate::model::terms::parametric_elements::ElementOf;
-use crate::model::terms::{Call, Terms};
+use crate::model::terms::{Call, Formula, GRAVITY, Terms, UNRELAXED, mid, rate, weight};
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 const INERTIA: &str = "block inertia";
 /// Elasticity and electroelasticity.
@@ -120,4 +127,240 @@ fn add_element<L: ElementLaw>(
         names,
     };
     element.build(law, terms);
+}
+
+/// A density in g/mm³ of an element of a block, where it counts.
+type Density<'a> = &'a dyn Fn(&SolidBlock, usize) -> Option<f64>;
+
+impl Solids {
+    /// Consistent masses, and the weight at each node.
+    pub(crate) fn add_inertia(&self, terms: &mut Terms<'_>) {
+        let of = |block: &SolidBlock, e: usize| block.constant(e, MaterialConstant::Density);
+        let read = terms.sought().clone();
+        let given = |block: &SolidBlock, e: usize| {
+            let density = block.material(e).density;
+            density.filter(|_| !read.is_sought(of(block, e)))
+        };
+        for (vector, mass) in self.weights(&given) {
+            terms.weigh_vector(vector, mass);
+        }
+        if self.moving().next().is_none() {
+            return;
+        }
+        if !terms.is_of_motion() {
+            terms.without(INERTIA, "a state of rest has no inertia");
+        } else {
+            for (vectors, mass) in self.masses(&given) {
+                terms.push(INERTIA, Mass { vectors, mass });
+            }
+            for block in self.moving().filter(|block| block.is_heavy()) {
+                terms.note(INERTIA, "density of", &block.solid.name);
+            }
+            terms.without(INERTIA, "no elastic block names a density");
+        }
+        let mut sought = Vec::new();
+        for (block, e) in self.elements() {
+            let is_new = sought.iter().all(|(_, known)| *known != of(block, e));
+            if is_new && read.is_sought(of(block, e)) {
+                sought.push((block, of(block, e)));
+            }
+        }
+        for (block, constant) in sought {
+            let its = |block: &SolidBlock, e: usize| (of(block, e) == constant).then_some(1.0);
+            self.add_sought_inertia(&block.solid.name, constant, &its, terms);
+        }
+    }
+
+    /// Masses and weights of the elements that have a sought density, from those of the density one.
+    fn add_sought_inertia(
+        &self,
+        name: &str,
+        constant: Constant,
+        one: Density<'_>,
+        terms: &mut Terms<'_>,
+    ) {
+        let mut read = terms.sought().read();
+        let density = read.constant(constant, 0.0);
+        for (vector, mass) in self.weights(one) {
+            let mut read = read.clone();
+            if let Some(gravity) = terms.gravity(&mut read) {
+                let law = weight(&density.scaled(mass), gravity);
+                let element = read.element(law, [mid(vector)], []);
+                terms.add_law(GRAVITY, "gravity of", "the scene", element);
+            }
+        }
+        if !terms.is_of_motion() {
+            return;
+        }
+        for ([a, b], mass) in self.masses(one) {
+            let (mass, why) = (density.scaled(mass), "density of");
+            if a == b {
+                let law = KineticEnergy { mass };
+                let element = read.clone().element(law, [rate(a)], []);
+                terms.add_kinetic_law(INERTIA, why, name, element);
+            } else {
+                let law = KineticCoupling { mass };
+                let element = read.clone().element(law, [rate(a), rate(b)], []);
+                terms.add_kinetic_law(INERTIA, why, name, element);
+            }
+        }
+    }
+
+    fn moving(&self) -> impl Iterator<Item = &SolidBlock> {
+        self.list.iter().filter(|block| !block.is_immobile)
+    }
+
+    /// Entries of the consistent mass matrix in g by pairs of vectors, of which the first is not the later one.
+    fn masses(&self, density: Density<'_>) -> BTreeMap<[usize; 2], f64> {
+        let mut sums = BTreeMap::new();
+        for (c, e) in self.elements() {
+            let Some(density) = density(c, e) else {
+                continue;
+            };
+            let (nodes, mass) = (c.nodes(e), c.shapes[e].mass(density));
+            for (i, &a) in nodes.iter().enumerate() {
+                for (j, &b) in nodes.iter().enumerate().filter(|&(_, &b)| a <= b) {
+                    *sums.entry([a, b]).or_default() += mass[i][j];
+                }
+            }
+        }
+        sums
+    }
+
+    /// Mass in g at each vector, as gravity sees it.
+    fn weights(&self, density: Density<'_>) -> Vec<(usize, f64)> {
+        let masses = |block: &SolidBlock| {
+            let masses = block.integrals(|e| density(block, e)).into_iter();
+            masses
+                .map(|(node, mass)| (block.vectors[node], mass))
+                .collect::<Vec<_>>()
+        };
+        self.moving().flat_map(masses).collect()
+    }
+}
+
+const MAXWELL: [&str; 2] = ["block maxwell elasticity", "block maxwell viscosity"];
+
+impl Solids {
+    /// Springs and dampers of Maxwell branches.
+    pub(crate) fn add_branches(&self, internals: &Internals, terms: &mut Terms<'_>) {
+        for (b, c, e) in self.numbered() {
+            for (branch, constants) in c.material(e).maxwell.list().iter().enumerate() {
+                if let Some(strains) = internals.strains(b, e, branch) {
+                    add_branch(c, e, branch, constants, strains, terms);
+                } else if terms.is_instantaneous() {
+                    let shape = Arc::new(c.reference_shape(e));
+                    let element = |shear_modulus| FiniteElement {
+                        shape: shape.clone(),
+                        law: c.unrelaxed(shear_modulus),
+                        nodes: c.nodes(e),
+                        terminals: (),
+                    };
+                    let modulus = constants.shear_modulus;
+                    let mut read = terms.sought().read();
+                    let constant = c.constant(e, MaterialConstant::BranchModulus(branch));
+                    let factor = read.constant(constant, modulus);
+                    let (given, unit) = (element(modulus), element(1.0));
+                    Call {
+                        term: MAXWELL[0],
+                        why: UNRELAXED,
+                        of: &c.solid.name,
+                    }
+                    .add_times::<(), _>(given, unit, factor, read, terms);
+                }
+            }
+        }
+        terms.without_branches(
+            MAXWELL,
+            "no elastic block that moves names a Maxwell branch",
+        );
+    }
+}
+
+/// One branch of an element: its spring, and the damper of each Gauss point.
+fn add_branch(
+    c: &SolidBlock,
+    e: usize,
+    branch: usize,
+    constants: &MaxwellBranch,
+    strains: [[MaterialVector; 2]; POINTS],
+    terms: &mut Terms<'_>,
+) {
+    let MaxwellBranch {
+        shear_modulus,
+        relaxation_time,
+    } = *constants;
+    let [elasticity, viscosity] = MAXWELL.map(|term| Call {
+        term,
+        why: "Maxwell branches of",
+        of: &c.solid.name,
+    });
+    let [of_modulus, of_time] = [
+        MaterialConstant::BranchModulus(branch),
+        MaterialConstant::RelaxationTime(branch),
+    ]
+    .map(|constant| c.constant(e, constant));
+    let mut read = terms.sought().read();
+    let modulus = read.constant(of_modulus, shear_modulus);
+    let of_spring = read.clone();
+    let both = &modulus * &read.constant(of_time, relaxation_time);
+    let strains = strains.map(|parts| parts.map(|part| terms.new_vector(part)));
+    let shape = c.shapes[e].clone();
+    for ([stretches, shears], volume) in strains.into_iter().zip(shape.weights()) {
+        let (stretched, sheared) = (mid(stretches), mid(shears));
+        let rates = [rate(stretches), rate(shears)];
+        let element = |coefficient| Element {
+            energy: MaxwellDamper { coefficient },
+            vectors: [stretched, sheared, stretched, sheared, rates[0], rates[1]],
+            scalars: [],
+        };
+        let given = element(relaxation_time * shear_modulus * volume);
+        let (unit, read) = (element(*volume), read.clone());
+        viscosity.add_times::<Formula<18, false>, _>(given, unit, both.clone(), read, terms);
+    }
+    let element = |shear_modulus| MaxwellElement {
+        shape: shape.clone(),
+        law: MaxwellSpring { shear_modulus },
+        nodes: c.nodes(e),
+        strains,
+    };
+    let (given, unit) = (element(shear_modulus), element(1.0));
+    elasticity.add_times::<(), _>(given, unit, modulus, of_spring, terms);
+}
+
+impl Model {
+    /// Cauchy stress in MPa of the Maxwell branches of an element of a block at a placed instant, its mean over the reference volume; `None`
+    /// where it has none, or they have relaxed.
+    pub fn branch_stress(
+        &self,
+        block: usize,
+        element: usize,
+        at: &Configuration,
+    ) -> Option<Matrix> {
+        let of = &self.solids[block];
+        let branches = of.material(element).maxwell.list();
+        let x = of.nodes(element).map(|v| at.x[v]);
+        if let Some(first) = self.of_elements.get(&(block, element)) {
+            let first = self.action.map.internal().start + first;
+            let stress = |(branch, shear_modulus): (usize, f64)| {
+                let mut strains = ViscousStrains::default();
+                let count = strains.len();
+                for point in 0..POINTS {
+                    for (m, strain) in strains.iter_mut().enumerate() {
+                        strain[point] = at.z[first + count * (POINTS * branch + point) + m];
+                    }
+                }
+                MaxwellSpring { shear_modulus }.stress(&of.shapes[element], &x, &strains)
+            };
+            let moduli = branches.iter().map(|branch| branch.shear_modulus);
+            return Some(moduli.enumerate().map(stress).sum());
+        }
+        let is_at_once = self.analysis.response == Response::Instantaneous;
+        if self.analysis.of_motion || !is_at_once || branches.is_empty() {
+            return None;
+        }
+        let sum = branches.iter().map(|branch| branch.shear_modulus).sum();
+        let law = of.unrelaxed(sum);
+        Some(law.fields(&of.reference_shape(element), &x, &()).stress)
+    }
 }

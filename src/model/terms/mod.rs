@@ -1,9 +1,7 @@
 //! Collection of the terms of components: elements of one kind make one term, those that read nothing that moves are left out, and the
 //! reasons are recorded.
 
-pub(super) mod block_inertia;
 pub(super) mod block_terms;
-pub(super) mod branch_terms;
 pub(super) mod charged;
 pub(super) mod constraints;
 pub(super) mod field_extent;
@@ -286,22 +284,9 @@ impl<'a> Terms<'a> {
         L: Law<M>,
     {
         match element.given() {
-            Some(given) => self.add_kinetic(term, why, of, given),
+            Some(given) => self.collect::<Formula<M, true>, _>(term, why, of, given),
             None => self.collect::<Formula<M, true>, _>(term, why, of, element),
         }
-    }
-
-    /// Adds a kinetic energy of vectors and rates of the intervals.
-    pub(super) fn add_kinetic<E, const M: usize, const NV: usize, const NS: usize>(
-        &mut self,
-        term: &'static str,
-        why: &'static str,
-        of: &str,
-        element: Element<E, NV, NS>,
-    ) where
-        E: Energy<M> + 'static,
-    {
-        self.collect::<Formula<M, true>, _>(term, why, of, element);
     }
 
     /// Notes that a part of the scene calls for a term.
