@@ -12,9 +12,7 @@ use proboscis::control::resolve_start;
 use proboscis::coordinates::Reduced;
 use proboscis::dynamics::{Solving, Start, Stepper};
 use proboscis::energy::DielectricCell;
-use proboscis::functional::{
-    Element, Formulas, Functional, Group, Inertia, Mass, Stencil, Term, VectorArg,
-};
+use proboscis::functional::{Element, Functional, Group, Inertia, Mass, Stencil, Term, VectorArg};
 use proboscis::kinematics::MaterialVector;
 use proboscis::model::system::{
     Body, Discretisation, ElementKind, Fidelity, JointKind, Material, System,
@@ -418,9 +416,7 @@ fn by_hand(system: &System, volts: &[f64]) -> Variant {
     let effects: Vec<Box<dyn Term>> = vec![
         Box::new(Inertia::new("bodies", bodies)),
         Box::new(Inertia::new("rods", rods)),
-        Box::new(Group::<Formulas<DielectricCell, 4, 1, 1>>::intervals(
-            "muscles", -1.0, cells,
-        )),
+        Box::new(Group::intervals("muscles", -1.0, cells)),
     ];
     let scalars = model.action.intervals.scalars;
     let effects = effects.into_iter().map(Into::into).collect();

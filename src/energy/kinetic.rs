@@ -17,6 +17,7 @@ impl<T: Number> Energy<3, T> for KineticEnergy<T> {
     type Local<const ORDER: usize> = OfSquare<T>;
 
     const DEGREE: usize = 2;
+    const KINETIC: bool = true;
     const ISOTROPIC: bool = true;
 
     fn at<const ORDER: usize>(&self, p: &SVector<T, 3>, w: &SVector<T, 3>) -> OfSquare<T> {
@@ -39,6 +40,7 @@ impl<T: Number> Energy<6, T> for KineticCoupling<T> {
     type Local<const ORDER: usize> = Jet<6, ORDER, T>;
 
     const DEGREE: usize = 2;
+    const KINETIC: bool = true;
 
     fn at<const ORDER: usize>(&self, p: &SVector<T, 6>, w: &SVector<T, 6>) -> Jet<6, ORDER, T> {
         Jet::dot(0, 3, p, w) * self.mass

@@ -55,6 +55,9 @@ pub trait Energy<const M: usize, T: Number = f64>: Clone + Send + Sync {
     /// True if a virtual work is that of loads, which supply energy; otherwise its forces dissipate.
     const APPLIED: bool = false;
 
+    /// True if it is a kinetic energy.
+    const KINETIC: bool = false;
+
     /// Number of arguments that read each of its n vectors: argument i reads vector i mod n.
     const READINGS: usize = 1;
 

@@ -105,6 +105,7 @@ law!(SectionInertia { length, moment } of 6);
 impl<T: Number> Energy<6, T> for SectionInertia<T> {
     type Local<const ORDER: usize> = Jet<6, ORDER, T>;
 
+    const KINETIC: bool = true;
     const READINGS: usize = 2;
 
     fn at<const ORDER: usize>(&self, p: &SVector<T, 6>, w: &SVector<T, 6>) -> Jet<6, ORDER, T> {

@@ -13,14 +13,14 @@ use crate::math::{Derivatives, Vector};
 
 /// Rates that an element reads.
 pub(super) struct Rates<'a, K: Kernel> {
-    element: &'a K::Element,
+    element: &'a K,
     vectors: [&'a [Vector]; 2],
     h: f64,
 }
 
 impl<'a, K: Kernel> Rates<'a, K> {
     /// Rates Πv of the vectors.
-    pub(super) fn new(element: &'a K::Element, sample: &Sample<'a>) -> Self {
+    pub(super) fn new(element: &'a K, sample: &Sample<'a>) -> Self {
         Self {
             element,
             vectors: sample.vectors,
@@ -29,7 +29,7 @@ impl<'a, K: Kernel> Rates<'a, K> {
     }
 
     /// Their own rates along the direction.
-    pub(super) fn along(element: &'a K::Element, sample: &Sample<'a>) -> Self {
+    pub(super) fn along(element: &'a K, sample: &Sample<'a>) -> Self {
         Self {
             element,
             vectors: sample.along,
@@ -39,9 +39,9 @@ impl<'a, K: Kernel> Rates<'a, K> {
 
     /// Arguments that are rates, with their values.
     fn list(&self) -> impl Iterator<Item = (usize, Vector)> {
-        let count = K::vectors(self.element) * K::READINGS;
-        (K::virtuals(self.element)..count).filter_map(|j| {
-            let arg = K::vector(self.element, j);
+        let count = self.element.vectors() * K::READINGS;
+        (self.element.virtuals()..count).filter_map(|j| {
+            let arg = self.element.vector(j);
             (arg.stencil == Stencil::Rate).then(|| (j, arg.read(self.h, self.vectors)))
         })
     }
@@ -96,7 +96,7 @@ impl<K: Kernel, D: Derivatives, P: Derivatives> FirstDerivatives for Border<'_, 
         if let Some((w, plain)) = self.along {
             by_h -= w.block(plain, i);
         }
-        match K::vector(self.v.element, i).stencil {
+        match self.v.element.vector(i).stencil {
             Stencil::Rate => by_h - force,
             _ => by_h,
         }
@@ -120,7 +120,7 @@ pub(super) struct QuantityBorder<'a, K: Kernel, D> {
 impl<K: Kernel, D: Derivatives> FirstDerivatives for QuantityBorder<'_, K, D> {
     fn by_vector(&self, i: usize) -> Vector {
         let by_h = self.v.block(self.plain, i);
-        match K::vector(self.v.element, i).stencil {
+        match self.v.element.vector(i).stencil {
             Stencil::Rate => by_h + self.plain.force(i),
             _ => by_h,
         }

@@ -13,7 +13,6 @@ use crate::energy::{Coefficient, NeoHooke};
 use crate::functional::{Kernel, Order, Sample, ScalarArg, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
 use std::fmt;
-use std::marker::PhantomData;
 use std::sync::Arc;
 
 /// One finite element: its geometry, its law, and its arguments.
@@ -71,10 +70,6 @@ impl Electrical for Dielectric {
         std::array::from_fn(potential)
     }
 }
-
-/// The kind of elements that are finite elements of `NODES` nodes.
-#[derive(Debug)]
-pub struct FiniteElements<F, L = NeoHooke, const NODES: usize = 8>(PhantomData<(F, L)>);
 
 /// Derivatives of the scalar of an element, and those of its contraction with the direction.
 #[derive(Debug, Default)]
@@ -139,48 +134,47 @@ impl<F: Field, const NODES: usize> Derivatives for Local<F, NODES> {
     }
 }
 
-impl<F: Electrical, L: ElementLaw, const NODES: usize> Kernel for FiniteElements<F, L, NODES> {
-    type Element = FiniteElement<F, L, NODES>;
+impl<F: Electrical, L: ElementLaw, const NODES: usize> Kernel for FiniteElement<F, L, NODES> {
     type Storage = Variations<Local<F, NODES>>;
 
     const PARTS: Option<[&'static str; 2]> = F::PARTS;
 
     #[inline(always)]
-    fn vectors(_: &FiniteElement<F, L, NODES>) -> usize {
+    fn vectors(&self) -> usize {
         NODES
     }
 
     #[inline(always)]
-    fn scalars(element: &FiniteElement<F, L, NODES>) -> usize {
-        F::terminals::<NODES>(&element.terminals).len()
+    fn scalars(&self) -> usize {
+        F::terminals::<NODES>(&self.terminals).len()
     }
 
     #[inline(always)]
-    fn vector(element: &FiniteElement<F, L, NODES>, i: usize) -> VectorArg {
-        Stencil::Mid.of(element.nodes[i])
+    fn vector(&self, i: usize) -> VectorArg {
+        Stencil::Mid.of(self.nodes[i])
     }
 
     #[inline(always)]
-    fn scalar(element: &FiniteElement<F, L, NODES>, s: usize) -> Option<(usize, f64)> {
-        F::terminals::<NODES>(&element.terminals)[s].scalar
+    fn scalar(&self, s: usize) -> Option<(usize, f64)> {
+        F::terminals::<NODES>(&self.terminals)[s].scalar
     }
 
-    fn energy(element: &FiniteElement<F, L, NODES>, sample: &Sample<'_>) -> f64 {
-        let x = middle(sample.vectors, &element.nodes);
-        let potentials = element.potentials(sample.scalars);
-        element.law.energy(&element.shape, &x, &potentials)
+    fn energy(&self, sample: &Sample<'_>) -> f64 {
+        let x = middle(sample.vectors, &self.nodes);
+        let potentials = self.potentials(sample.scalars);
+        self.law.energy(&self.shape, &x, &potentials)
     }
 
     /// The energy without the field.
-    fn first_part(element: &FiniteElement<F, L, NODES>, sample: &Sample<'_>) -> f64 {
-        let x = middle(sample.vectors, &element.nodes);
-        let law = element.law.passive();
-        law.energy(&element.shape, &x, &())
+    fn first_part(&self, sample: &Sample<'_>) -> f64 {
+        let x = middle(sample.vectors, &self.nodes);
+        let law = self.law.passive();
+        law.energy(&self.shape, &x, &())
     }
 
-    fn volume(element: &FiniteElement<F, L, NODES>, sample: &Sample<'_>) -> Option<Dilatation> {
-        let x = middle(sample.vectors, &element.nodes);
-        let found = element.law.dilatation(&element.shape, &x)?;
+    fn volume(&self, sample: &Sample<'_>) -> Option<Dilatation> {
+        let x = middle(sample.vectors, &self.nodes);
+        let found = self.law.dilatation(&self.shape, &x)?;
         Some(Dilatation {
             slopes: found.slopes.as_slice().try_into().ok()?,
             stiffness: found.stiffness,
@@ -189,32 +183,29 @@ impl<F: Electrical, L: ElementLaw, const NODES: usize> Kernel for FiniteElements
         })
     }
 
-    fn curved_volume(
-        element: &FiniteElement<F, L, NODES>,
-        sample: &Sample<'_>,
-    ) -> Option<[[Matrix; 8]; 8]> {
-        let x = middle(sample.vectors, &element.nodes);
-        let found = second_derivatives_of_volume(&element.shape, &x);
+    fn curved_volume(&self, sample: &Sample<'_>) -> Option<[[Matrix; 8]; 8]> {
+        let x = middle(sample.vectors, &self.nodes);
+        let found = second_derivatives_of_volume(&self.shape, &x);
         let rows = found.iter().map(|row| row.as_slice().try_into().ok());
         let rows: Option<Vec<[Matrix; 8]>> = rows.collect();
         rows?.try_into().ok()
     }
 
     fn prepare(
-        element: &FiniteElement<F, L, NODES>,
+        &self,
         order: Order,
         sample: &Sample<'_>,
         Variations { plain, along }: &mut Variations<Local<F, NODES>>,
     ) {
-        let FiniteElement { shape, law, .. } = element;
-        let x = middle(sample.vectors, &element.nodes);
-        let potentials = element.potentials(sample.scalars);
+        let Self { shape, law, .. } = self;
+        let x = middle(sample.vectors, &self.nodes);
+        let potentials = self.potentials(sample.scalars);
         match order {
             Order::Gradient => law.gradient(shape, &x, &potentials, plain),
             Order::Hessian => law.tangent(shape, &x, &potentials, plain),
             Order::Third => {
-                let w = middle(sample.along, &element.nodes);
-                let terminals = F::terminals::<NODES>(&element.terminals);
+                let w = middle(sample.along, &self.nodes);
+                let terminals = F::terminals::<NODES>(&self.terminals);
                 let rates = F::potentials::<NODES>(|i| terminals[i].rate(sample.scalars_along));
                 law.third(shape, &x, &potentials, &w, &rates, plain, along);
             }
@@ -223,7 +214,7 @@ impl<F: Electrical, L: ElementLaw, const NODES: usize> Kernel for FiniteElements
 
     #[inline(always)]
     fn derivatives<S: Scatter>(
-        _: &FiniteElement<F, L, NODES>,
+        &self,
         order: Order,
         _: &Sample<'_>,
         variations: &Variations<Local<F, NODES>>,
@@ -245,10 +236,6 @@ pub struct ElementField<const NODES: usize = 8> {
     /// Time at which the nodes are read.
     pub at: Stencil,
 }
-
-/// The kind of elements that are fields at points of elements of `NODES` nodes.
-#[derive(Debug)]
-pub enum ElementFields<const NODES: usize = 8> {}
 
 impl<const NODES: usize> ElementField<NODES> {
     fn field(&self, sample: &Sample<'_>) -> SpatialField<NODES> {
@@ -281,43 +268,36 @@ impl<const NODES: usize> Derivatives for SpatialField<NODES> {
     }
 }
 
-impl<const NODES: usize> Kernel for ElementFields<NODES> {
-    type Element = ElementField<NODES>;
+impl<const NODES: usize> Kernel for ElementField<NODES> {
     type Storage = ();
 
-    fn vectors(element: &ElementField<NODES>) -> usize {
-        element.nodes.len()
+    fn vectors(&self) -> usize {
+        self.nodes.len()
     }
 
-    fn scalars(element: &ElementField<NODES>) -> usize {
-        element.terminals.len()
+    fn scalars(&self) -> usize {
+        self.terminals.len()
     }
 
-    fn vector(element: &ElementField<NODES>, i: usize) -> VectorArg {
-        element.at.of(element.nodes[i])
+    fn vector(&self, i: usize) -> VectorArg {
+        self.at.of(self.nodes[i])
     }
 
-    fn scalar(element: &ElementField<NODES>, s: usize) -> Option<(usize, f64)> {
-        element.terminals[s].scalar
+    fn scalar(&self, s: usize) -> Option<(usize, f64)> {
+        self.terminals[s].scalar
     }
 
-    fn energy(element: &ElementField<NODES>, sample: &Sample<'_>) -> f64 {
-        element.field(sample).value()
+    fn energy(&self, sample: &Sample<'_>) -> f64 {
+        self.field(sample).value()
     }
 
     /// First and second derivatives: a quantity is asked for no others.
-    fn derivatives<S: Scatter>(
-        element: &ElementField<NODES>,
-        _: Order,
-        sample: &Sample<'_>,
-        (): &(),
-        to: &mut S,
-    ) {
-        to.plain(&element.field(sample));
+    fn derivatives<S: Scatter>(&self, _: Order, sample: &Sample<'_>, (): &(), to: &mut S) {
+        to.plain(&self.field(sample));
     }
 }
 
-/// One finite element without a field.
+/// One finite element without a field; the parameter is its only scalar.
 #[derive(Clone, Debug)]
 pub struct VariedElement<const NODES: usize = 8> {
     /// Gradients of the shape functions, which all elements of one place share.
@@ -331,10 +311,6 @@ pub struct VariedElement<const NODES: usize = 8> {
     /// The parameter that it follows, a scalar of the interval.
     pub parameter: usize,
 }
-
-/// The kind of these elements; the parameter is their only scalar.
-#[derive(Debug)]
-pub enum VariedElements<const NODES: usize = 8> {}
 
 /// Derivatives of the energy W of an element and of W_J and W_JJ, and their rates along the direction.
 type LimitVariations<const NODES: usize> = Variations<[Local<Passive, NODES>; 3]>;
@@ -389,46 +365,45 @@ impl<const NODES: usize> Derivatives for ByLimit<'_, NODES> {
     }
 }
 
-impl<const NODES: usize> Kernel for VariedElements<NODES> {
-    type Element = VariedElement<NODES>;
+impl<const NODES: usize> Kernel for VariedElement<NODES> {
     type Storage = LimitVariations<NODES>;
 
     #[inline(always)]
-    fn vectors(_: &VariedElement<NODES>) -> usize {
+    fn vectors(&self) -> usize {
         NODES
     }
 
     #[inline(always)]
-    fn scalars(_: &VariedElement<NODES>) -> usize {
+    fn scalars(&self) -> usize {
         1
     }
 
     #[inline(always)]
-    fn vector(element: &VariedElement<NODES>, i: usize) -> VectorArg {
-        Stencil::Mid.of(element.nodes[i])
+    fn vector(&self, i: usize) -> VectorArg {
+        Stencil::Mid.of(self.nodes[i])
     }
 
     #[inline(always)]
-    fn scalar(element: &VariedElement<NODES>, _: usize) -> Option<(usize, f64)> {
-        Some((element.parameter, 1.0))
+    fn scalar(&self, _: usize) -> Option<(usize, f64)> {
+        Some((self.parameter, 1.0))
     }
 
-    fn energy(element: &VariedElement<NODES>, sample: &Sample<'_>) -> f64 {
-        let x = middle(sample.vectors, &element.nodes);
-        let law = element.at(limit(element, sample).real());
-        law.energy(&element.shape, &x, &())
+    fn energy(&self, sample: &Sample<'_>) -> f64 {
+        let x = middle(sample.vectors, &self.nodes);
+        let law = self.at(limit(self, sample).real());
+        law.energy(&self.shape, &x, &())
     }
 
     fn prepare(
-        element: &VariedElement<NODES>,
+        &self,
         order: Order,
         sample: &Sample<'_>,
         Variations { plain, along }: &mut LimitVariations<NODES>,
     ) {
-        let x = middle(sample.vectors, &element.nodes);
-        let w = middle(sample.along, &element.nodes);
-        let shape = &element.shape;
-        let law = element.at(limit(element, sample).real());
+        let x = middle(sample.vectors, &self.nodes);
+        let w = middle(sample.along, &self.nodes);
+        let shape = &self.shape;
+        let law = self.at(limit(self, sample).real());
         let [slope, curvature] = law.law.by_limit().expect("it is Gent's law");
         let laws = [law, law.by(slope), law.by(curvature)];
         for ((law, plain), along) in laws.iter().zip(plain).zip(along) {
@@ -441,13 +416,13 @@ impl<const NODES: usize> Kernel for VariedElements<NODES> {
     }
 
     fn derivatives<S: Scatter>(
-        element: &VariedElement<NODES>,
+        &self,
         order: Order,
         sample: &Sample<'_>,
         Variations { plain, along }: &LimitVariations<NODES>,
         to: &mut S,
     ) {
-        let limit = limit(element, sample);
+        let limit = limit(self, sample);
         let by_limit = |of, values| ByLimit {
             of,
             values,

@@ -4,12 +4,10 @@ use crate::energy::Energy;
 use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, Gradient, Local, Vector};
 use nalgebra::SVector;
-use std::fmt;
-use std::marker::PhantomData;
 
-/// One element: a formula and its arguments.
+/// One element: a formula of `M = 3 NV + NS` arguments, and these.
 #[derive(Clone, Debug)]
-pub struct Element<E, const NV: usize, const NS: usize> {
+pub struct Element<E, const M: usize, const NV: usize, const NS: usize> {
     /// The formula.
     pub energy: E,
     /// Vectors, in the order of the arguments.
@@ -18,30 +16,17 @@ pub struct Element<E, const NV: usize, const NS: usize> {
     pub scalars: [usize; NS],
 }
 
-/// Elements of one formula of `M = 3 NV + NS` arguments.
-pub struct Formulas<E, const M: usize, const NV: usize, const NS: usize>(PhantomData<E>);
-
-impl<E, const M: usize, const NV: usize, const NS: usize> fmt::Debug for Formulas<E, M, NV, NS> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "formulas of {M} arguments")
-    }
-}
-
-impl<E, const M: usize, const NV: usize, const NS: usize> Formulas<E, M, NV, NS>
+impl<E, const M: usize, const NV: usize, const NS: usize> Element<E, M, NV, NS>
 where
     E: Energy<M>,
 {
     /// Arguments at the sample and their rates along its direction; a virtual displacement takes the rate as value.
     #[inline(always)]
-    pub(super) fn arguments(
-        element: &Element<E, NV, NS>,
-        order: Order,
-        sample: &Sample<'_>,
-    ) -> (SVector<f64, M>, SVector<f64, M>) {
+    fn arguments(&self, order: Order, sample: &Sample<'_>) -> (SVector<f64, M>, SVector<f64, M>) {
         const { assert!(M == 3 * NV + NS) };
         let mut p = SVector::<f64, M>::zeros();
         let mut w = SVector::<f64, M>::zeros();
-        for (i, arg) in element.vectors.iter().enumerate() {
+        for (i, arg) in self.vectors.iter().enumerate() {
             let is_virtual = i < E::VIRTUAL;
             if !is_virtual {
                 let value = arg.read(sample.h, sample.vectors);
@@ -53,7 +38,7 @@ where
                 to.fixed_rows_mut::<3>(3 * i).copy_from(&rate);
             }
         }
-        for (i, &s) in element.scalars.iter().enumerate() {
+        for (i, &s) in self.scalars.iter().enumerate() {
             p[3 * NV + i] = sample.scalars[s];
             if order == Order::Third {
                 w[3 * NV + i] = sample.scalars_along[s];
@@ -63,9 +48,9 @@ where
     }
 
     /// Arguments with vectors and rates, of a kinetic energy.
-    fn moving(element: &Element<E, NV, NS>, [x, v]: [&[Vector]; 2]) -> SVector<f64, M> {
+    fn moving(&self, [x, v]: [&[Vector]; 2]) -> SVector<f64, M> {
         let mut p = SVector::<f64, M>::zeros();
-        for (i, arg) in element.vectors.iter().enumerate() {
+        for (i, arg) in self.vectors.iter().enumerate() {
             let read = if arg.stencil == Stencil::Rate { v } else { x };
             p.fixed_rows_mut::<3>(3 * i).copy_from(&read[arg.vector]);
         }
@@ -73,20 +58,15 @@ where
     }
 
     /// The arguments that are rates.
-    fn rates(element: &Element<E, NV, NS>) -> impl Iterator<Item = (usize, &VectorArg)> {
-        let all = element.vectors.iter().enumerate();
+    fn rates(&self) -> impl Iterator<Item = (usize, &VectorArg)> {
+        let all = self.vectors.iter().enumerate();
         all.filter(|(_, arg)| arg.stencil == Stencil::Rate)
     }
 
     #[inline(always)]
-    fn hand<const ORDER: usize>(
-        element: &Element<E, NV, NS>,
-        order: Order,
-        sample: &Sample<'_>,
-        to: &mut impl Scatter,
-    ) {
-        let (p, w) = Self::arguments(element, order, sample);
-        let local = element.energy.at::<ORDER>(&p, &w);
+    fn hand<const ORDER: usize>(&self, order: Order, sample: &Sample<'_>, to: &mut impl Scatter) {
+        let (p, w) = self.arguments(order, sample);
+        let local = self.energy.at::<ORDER>(&p, &w);
         let plain = local.plain::<NV>();
         if const { ORDER == 1 } {
             return to.plain(&Gradient(&plain));
@@ -101,16 +81,16 @@ where
     }
 }
 
-impl<E, const M: usize, const NV: usize, const NS: usize> Kernel for Formulas<E, M, NV, NS>
+impl<E, const M: usize, const NV: usize, const NS: usize> Kernel for Element<E, M, NV, NS>
 where
     E: Energy<M> + 'static,
 {
-    type Element = Element<E, NV, NS>;
     type Storage = ();
 
     const DEGREE: usize = E::DEGREE;
     const VIRTUAL: usize = E::VIRTUAL;
     const APPLIED: bool = E::APPLIED;
+    const KINETIC: bool = E::KINETIC;
     const READINGS: usize = E::READINGS;
     const ISOTROPIC: bool = E::ISOTROPIC;
     const OF_SQUARES: bool = E::OF_SQUARES;
@@ -120,86 +100,74 @@ where
     }
 
     #[inline(always)]
-    fn vectors(_: &Self::Element) -> usize {
+    fn vectors(&self) -> usize {
         const { assert!(NV.is_multiple_of(E::READINGS)) };
         NV / E::READINGS
     }
 
     #[inline(always)]
-    fn scalars(_: &Self::Element) -> usize {
+    fn scalars(&self) -> usize {
         NS
     }
 
     #[inline(always)]
-    fn vector(element: &Self::Element, i: usize) -> VectorArg {
-        let arg = element.vectors[i];
-        debug_assert_eq!(arg.vector, element.vectors[i % (NV / E::READINGS)].vector);
+    fn vector(&self, i: usize) -> VectorArg {
+        let arg = self.vectors[i];
+        debug_assert_eq!(arg.vector, self.vectors[i % (NV / E::READINGS)].vector);
         arg
     }
 
     #[inline(always)]
-    fn scalar(element: &Self::Element, s: usize) -> Option<(usize, f64)> {
-        Some((element.scalars[s], 1.0))
+    fn scalar(&self, s: usize) -> Option<(usize, f64)> {
+        Some((self.scalars[s], 1.0))
     }
 
-    fn energy(element: &Self::Element, sample: &Sample<'_>) -> f64 {
-        let (mut p, w) = Self::arguments(element, Order::Gradient, sample);
-        for (i, arg) in element.vectors.iter().enumerate().take(E::VIRTUAL) {
+    fn energy(&self, sample: &Sample<'_>) -> f64 {
+        let (mut p, w) = self.arguments(Order::Gradient, sample);
+        for (i, arg) in self.vectors.iter().enumerate().take(E::VIRTUAL) {
             let step = sample.vectors[1][arg.vector] - sample.vectors[0][arg.vector];
             p.fixed_rows_mut::<3>(3 * i).copy_from(&step);
         }
-        element.energy.at::<1>(&p, &w).value()
+        self.energy.at::<1>(&p, &w).value()
     }
 
-    fn momentum(
-        element: &Self::Element,
-        scale: f64,
-        x: &[Vector],
-        v: &[Vector],
-        out: &mut [Vector],
-    ) {
-        let p = Self::moving(element, [x, v]);
-        let local = element.energy.at::<1>(&p, &SVector::zeros());
+    fn momentum(&self, scale: f64, x: &[Vector], v: &[Vector], out: &mut [Vector]) {
+        let p = self.moving([x, v]);
+        let local = self.energy.at::<1>(&p, &SVector::zeros());
         let gradient = local.plain::<NV>();
-        for (i, arg) in Self::rates(element) {
+        for (i, arg) in self.rates() {
             out[arg.vector] += gradient.force(i) * scale;
         }
     }
 
     fn momentum_along(
-        element: &Self::Element,
+        &self,
         scale: f64,
         at: [&[Vector]; 2],
         by: [&[Vector]; 2],
         out: &mut [Vector],
     ) {
-        let [p, w] = [at, by].map(|of| Self::moving(element, of));
-        let local = element.energy.at::<3>(&p, &w);
+        let [p, w] = [at, by].map(|of| self.moving(of));
+        let local = self.energy.at::<3>(&p, &w);
         let change = local.along::<NV>();
-        for (i, arg) in Self::rates(element) {
+        for (i, arg) in self.rates() {
             out[arg.vector] += change.force(i) * scale;
         }
     }
 
     #[inline(always)]
-    fn derivatives<S: Scatter>(
-        element: &Self::Element,
-        order: Order,
-        sample: &Sample<'_>,
-        (): &(),
-        to: &mut S,
-    ) {
+    fn derivatives<S: Scatter>(&self, order: Order, sample: &Sample<'_>, (): &(), to: &mut S) {
         debug_assert!(S::receives(order));
         if const { matches!(S::ORDER, Some(Order::Gradient)) } {
-            Self::hand::<1>(element, order, sample, to);
+            self.hand::<1>(order, sample, to);
         } else if const { matches!(S::ORDER, Some(Order::Hessian)) } {
-            Self::hand::<2>(element, order, sample, to);
+            self.hand::<2>(order, sample, to);
         } else if order == Order::Gradient {
-            Self::hand::<1>(element, order, sample, to);
+            self.hand::<1>(order, sample, to);
         } else if const { E::VIRTUAL > 0 } || order == Order::Hessian {
-            Self::hand::<2>(element, order, sample, to);
+            self.hand::<2>(order, sample, to);
         } else {
-            Self::hand::<3>(element, order, sample, to);
+            self.hand::<3>(order, sample, to);
         }
     }
 }

@@ -17,7 +17,7 @@ pub struct Group<K: Kernel> {
     name: String,
     pub(super) scale: f64,
     site: Site,
-    pub(super) elements: Vec<K::Element>,
+    pub(super) elements: Vec<K>,
     prepared: Batches<K::Storage>,
 }
 
@@ -36,16 +36,16 @@ impl<K: Kernel> fmt::Debug for Group<K> {
 
 impl<K: Kernel> Group<K> {
     /// `scale · h · Σ E` over an interval.
-    pub fn intervals(name: &str, scale: f64, elements: Vec<K::Element>) -> Self {
+    pub fn intervals(name: &str, scale: f64, elements: Vec<K>) -> Self {
         Self::new(name, scale, Site::Intervals, elements)
     }
 
     /// `scale · Σ E` at an instant.
-    pub fn instants(name: &str, scale: f64, elements: Vec<K::Element>) -> Self {
+    pub fn instants(name: &str, scale: f64, elements: Vec<K>) -> Self {
         Self::new(name, scale, Site::Instants, elements)
     }
 
-    fn new(name: &str, scale: f64, site: Site, elements: Vec<K::Element>) -> Self {
+    fn new(name: &str, scale: f64, site: Site, elements: Vec<K>) -> Self {
         Self {
             name: name.to_owned(),
             scale,
@@ -60,7 +60,7 @@ impl<K: Kernel> Group<K> {
         // Multipliers do not meet in second derivatives.
         let has_scalars = self.site == Site::Intervals;
         for element in &self.elements {
-            couple::<K>(element, has_scalars, to);
+            couple(element, has_scalars, to);
         }
     }
 
@@ -68,8 +68,8 @@ impl<K: Kernel> Group<K> {
     pub(super) fn scalars_read(&self) -> Vec<usize> {
         let mut scalars = Vec::new();
         for element in &self.elements {
-            for s in 0..K::scalars(element) {
-                if let Some((scalar, _)) = K::scalar(element, s) {
+            for s in 0..element.scalars() {
+                if let Some((scalar, _)) = element.scalar(s) {
                     scalars.push(scalar);
                 }
             }
@@ -96,14 +96,14 @@ impl<K: Kernel> Group<K> {
         sample: &Sample<'_>,
         mut slots: &[u32],
         goes_on: impl Fn() -> bool,
-        mut receive: impl FnMut(&K::Element, Places<'_, K>, &K::Storage) + Send,
+        mut receive: impl FnMut(&K, Places<'_, K>, &K::Storage) + Send,
     ) -> bool {
         self.prepared.each(
             &self.elements,
             goes_on,
-            |element, storage| K::prepare(element, order, sample, storage),
+            |element, storage| element.prepare(order, sample, storage),
             |element, storage| {
-                let own = Slots::take::<K>(element, &mut slots);
+                let own = Slots::take(element, &mut slots);
                 receive(element, Places::new(element, own, sample), storage);
             },
         )
@@ -120,7 +120,7 @@ fn names_of_parts(name: &str, parts: Option<[&str; 2]>) -> Vec<String> {
 
 /// The derivatives of `c E`, the rows of equations and both contracted with the direction.
 struct Action<'a, K: Kernel> {
-    element: &'a K::Element,
+    element: &'a K,
     places: Places<'a, K>,
     /// Factor of E, with the length of the interval.
     c: f64,
@@ -135,17 +135,17 @@ struct Action<'a, K: Kernel> {
 
 /// Arguments that give equations.
 #[inline(always)]
-fn rows<K: Kernel>(element: &K::Element) -> Range<usize> {
+fn rows<K: Kernel>(element: &K) -> Range<usize> {
     match K::VIRTUAL {
         0 => ALL,
-        _ => 0..K::virtuals(element),
+        _ => 0..element.virtuals(),
     }
 }
 
 /// Arguments that are unknowns.
 #[inline(always)]
-fn unknowns<K: Kernel>(element: &K::Element) -> Range<usize> {
-    K::virtuals(element)..usize::MAX
+fn unknowns<K: Kernel>(element: &K) -> Range<usize> {
+    element.virtuals()..usize::MAX
 }
 
 impl<K: Kernel> Scatter for Action<'_, K> {
@@ -154,13 +154,13 @@ impl<K: Kernel> Scatter for Action<'_, K> {
     #[inline(always)]
     fn plain<D: Derivatives>(&mut self, d: &D) {
         let part = &mut self.out.plain;
-        let rows = || rows::<K>(self.element);
+        let rows = || rows(self.element);
         self.places.first(self.c, rows(), d, &mut part.first());
         if const { !D::HAS_SECOND } || self.order < Order::Hessian {
             return;
         }
         if K::DEGREE >= 2 {
-            let unknowns = unknowns::<K>(self.element);
+            let unknowns = unknowns(self.element);
             self.places.second(self.c, rows(), unknowns, d, part);
         }
         if self.is_free {
@@ -175,7 +175,7 @@ impl<K: Kernel> Scatter for Action<'_, K> {
     #[inline(always)]
     fn along<D: Derivatives, W: Derivatives>(&mut self, d: &D, along: &W) {
         let part = &mut self.out.contracted;
-        let unknowns = || unknowns::<K>(self.element);
+        let unknowns = || unknowns(self.element);
         self.places
             .first(self.c, unknowns(), along, &mut part.first());
         if K::DEGREE >= 3 {
@@ -218,9 +218,9 @@ impl<K: Kernel> Term for Group<K> {
     }
 
     fn reading(&self, is_meant: &dyn Fn(usize) -> bool) -> Option<Arc<dyn Term>> {
-        let reads = |element: &&K::Element| {
-            let mut vectors = 0..K::vectors(element);
-            vectors.any(|a| is_meant(K::vector(element, a).vector))
+        let reads = |element: &&K| {
+            let mut vectors = 0..element.vectors();
+            vectors.any(|a| is_meant(element.vector(a).vector))
         };
         let elements: Vec<_> = self.elements.iter().filter(reads).cloned().collect();
         let group = |elements| Self::new(&self.name, self.scale, self.site, elements);
@@ -247,7 +247,7 @@ impl<K: Kernel> Term for Group<K> {
 
     fn energy(&self, sample: &Sample<'_>) -> f64 {
         let elements = self.elements.iter();
-        elements.map(|element| K::energy(element, sample)).sum()
+        elements.map(|element| element.energy(sample)).sum()
     }
 
     fn energy_parts(&self) -> Vec<String> {
@@ -261,14 +261,14 @@ impl<K: Kernel> Term for Group<K> {
             return;
         }
         let elements = self.elements.iter();
-        let first: f64 = elements.map(|e| K::first_part(e, sample)).sum();
+        let first: f64 = elements.map(|e| e.first_part(sample)).sum();
         out.extend([first, total - first]);
     }
 
     fn momentum(&self, x: &[Vector], v: &[Vector], out: &mut [Vector]) {
         if self.kind() == TermKind::Kinetic {
             for element in &self.elements {
-                K::momentum(element, self.scale, x, v, out);
+                element.momentum(self.scale, x, v, out);
             }
         }
     }
@@ -276,7 +276,7 @@ impl<K: Kernel> Term for Group<K> {
     fn momentum_along(&self, at: [&[Vector]; 2], by: [&[Vector]; 2], out: &mut [Vector]) {
         if self.kind() == TermKind::Kinetic {
             for element in &self.elements {
-                K::momentum_along(element, self.scale, at, by, out);
+                element.momentum_along(self.scale, at, by, out);
             }
         }
     }
@@ -309,7 +309,7 @@ impl<K: Kernel> Term for Group<K> {
                 is_free,
                 out: &mut *out,
             };
-            K::derivatives(element, order, sample, storage, &mut action);
+            element.derivatives(order, sample, storage, &mut action);
         });
         if let Some(nodes) = out.plain.nodes.as_mut() {
             nodes.is_whole &= is_whole;

@@ -3,7 +3,6 @@
 use crate::element::Dilatation;
 use crate::functional::{Order, Sample, VectorArg};
 use crate::math::{Derivatives, Matrix, Vector};
-use std::fmt::Debug;
 
 /// Receives the derivatives of one element.
 pub trait Scatter {
@@ -26,18 +25,15 @@ pub trait Scatter {
     }
 }
 
-/// Elements of one kind: the arguments of an element, and the derivatives of its scalar E by them.
+/// An element, of which a [`Group`](crate::functional::Group) has many of one kind: its arguments, and the derivatives of its scalar E by them.
 ///
 /// E is an energy in mJ, a virtual work δx·f in mJ of forces without a potential, or the value of a quantity. An element has `n`
 /// vectors of the list. Argument `i` reads vector `i mod n`, so that node forces of an element that reads places and velocities
 /// of its nodes share their couplings. How arguments follow from instants, which rows of a virtual work are equations, and where
 /// an entry lies is known to the group of the elements alone.
-pub trait Kernel: Debug + Send + Sync + 'static {
-    /// One element.
-    type Element: Clone + Send + Sync;
-
+pub trait Kernel: Clone + Send + Sync + 'static {
     /// Storage in which [`prepare`](Self::prepare) keeps data of one element; `()` if nothing is cached.
-    type Storage: Debug + Default + Send + Sync;
+    type Storage: std::fmt::Debug + Default + Send + Sync;
 
     /// Polynomial degree of E: derivatives above it vanish and are never asked for.
     const DEGREE: usize = usize::MAX;
@@ -48,6 +44,9 @@ pub trait Kernel: Debug + Send + Sync + 'static {
 
     /// True if a virtual work is that of loads, which supply energy; otherwise its forces dissipate.
     const APPLIED: bool = false;
+
+    /// True if E is a kinetic energy.
+    const KINETIC: bool = false;
 
     /// Number of arguments for each vector of an element.
     const READINGS: usize = 1;
@@ -66,7 +65,7 @@ pub trait Kernel: Debug + Send + Sync + 'static {
 
     /// Number of leading arguments of an element that are virtual displacements.
     #[inline(always)]
-    fn virtuals(_: &Self::Element) -> usize {
+    fn virtuals(&self) -> usize {
         Self::VIRTUAL
     }
 
@@ -76,37 +75,37 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     }
 
     /// Number n of vectors of an element.
-    fn vectors(element: &Self::Element) -> usize;
+    fn vectors(&self) -> usize;
 
     /// Number of its scalars.
     #[inline(always)]
-    fn scalars(_: &Self::Element) -> usize {
+    fn scalars(&self) -> usize {
         0
     }
 
     /// Returns the vector that argument `i` reads, of n times [`READINGS`](Self::READINGS).
-    fn vector(element: &Self::Element, i: usize) -> VectorArg;
+    fn vector(&self, i: usize) -> VectorArg;
 
     /// Scalar of the site that argument `s` depends on, and the factor of it; `None` for a constant.
     #[inline(always)]
-    fn scalar(_: &Self::Element, _s: usize) -> Option<(usize, f64)> {
+    fn scalar(&self, _s: usize) -> Option<(usize, f64)> {
         None
     }
 
     /// E at a sample; the work over the interval where E is a virtual work.
-    fn energy(element: &Self::Element, sample: &Sample<'_>) -> f64;
+    fn energy(&self, sample: &Sample<'_>) -> f64;
 
     /// The first of the [parts](Self::PARTS) of the energy.
-    fn first_part(element: &Self::Element, sample: &Sample<'_>) -> f64 {
-        Self::energy(element, sample)
+    fn first_part(&self, sample: &Sample<'_>) -> f64 {
+        self.energy(sample)
     }
 
     /// Adds the momenta ∂E/∂ẋ times `scale` at vectors x with rates v, where E is a kinetic energy.
-    fn momentum(_: &Self::Element, _scale: f64, _x: &[Vector], _v: &[Vector], _: &mut [Vector]) {}
+    fn momentum(&self, _scale: f64, _x: &[Vector], _v: &[Vector], _: &mut [Vector]) {}
 
     /// Adds the derivatives of the momenta along changes `by` of vectors and rates.
     fn momentum_along(
-        _: &Self::Element,
+        &self,
         _scale: f64,
         _at: [&[Vector]; 2],
         _by: [&[Vector]; 2],
@@ -115,22 +114,22 @@ pub trait Kernel: Debug + Send + Sync + 'static {
     }
 
     /// The volume of a hexahedron with one pressure; `None` of other elements.
-    fn volume(_: &Self::Element, _: &Sample<'_>) -> Option<Dilatation> {
+    fn volume(&self, _: &Sample<'_>) -> Option<Dilatation> {
         None
     }
 
     /// Second derivatives of that volume.
-    fn curved_volume(_: &Self::Element, _: &Sample<'_>) -> Option<[[Matrix; 8]; 8]> {
+    fn curved_volume(&self, _: &Sample<'_>) -> Option<[[Matrix; 8]; 8]> {
         None
     }
 
     /// Computes what takes time: many elements are prepared on all cores, before derivatives are handed over in their order.
-    fn prepare(_: &Self::Element, _: Order, _: &Sample<'_>, _storage: &mut Self::Storage) {}
+    fn prepare(&self, _: Order, _: &Sample<'_>, _storage: &mut Self::Storage) {}
 
     /// Hands over the derivatives up to an order. At [`Third`](Order::Third) virtual displacements are the direction, so that E
     /// is its own contraction with costates.
     fn derivatives<S: Scatter>(
-        element: &Self::Element,
+        &self,
         order: Order,
         sample: &Sample<'_>,
         storage: &Self::Storage,

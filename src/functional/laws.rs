@@ -17,24 +17,13 @@ use crate::functional::{Element, Kernel, Order, ParameterOrder, Sample, Scatter,
 use crate::math::{Derivatives, Dual, Gradient, HyperDual, Local, Matrix, Number, Vector};
 use nalgebra::{SVector, Vector3};
 use smallvec::SmallVec;
-use std::fmt;
-use std::marker::PhantomData;
-
-/// Elements of one law of `M = 3 NV + NS` arguments.
-pub struct Laws<L, const M: usize, const NV: usize, const NS: usize>(PhantomData<L>);
-
-impl<L, const M: usize, const NV: usize, const NS: usize> fmt::Debug for Laws<L, M, NV, NS> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "formulas of {M} arguments with free parameters")
-    }
-}
 
 /// The formula over plain numbers.
 type Plain<L, const M: usize> = <L as Law<M>>::Formula<f64>;
 
 /// An element at a sample, with its parameters.
 struct Evaluation<'a, L, const M: usize, const NV: usize, const NS: usize> {
-    element: &'a LawElement<L, NV, NS>,
+    element: &'a LawElement<L, M, NV, NS>,
     order: Order,
     sample: &'a Sample<'a>,
     values: Values<f64>,
@@ -46,7 +35,7 @@ impl<'a, L: Law<M>, const M: usize, const NV: usize, const NS: usize> Evaluation
     /// Leading arguments of the formula that are virtual displacements.
     const VIRTUAL: usize = Plain::<L, M>::VIRTUAL;
 
-    fn new(element: &'a LawElement<L, NV, NS>, order: Order, sample: &'a Sample<'a>) -> Self {
+    fn new(element: &'a LawElement<L, M, NV, NS>, order: Order, sample: &'a Sample<'a>) -> Self {
         let mut values = [0.0; MOST_PARAMETERS];
         for (value, &scalar) in values.iter_mut().zip(&element.parameters) {
             *value = sample.scalars[scalar];
@@ -205,7 +194,7 @@ impl<'a, L: Law<M>, const M: usize, const NV: usize, const NS: usize> Evaluation
         &'e self,
         formula: D,
         by: &'e [ByParameter<NV, NS>],
-    ) -> OfElement<'e, D, L, NV, NS> {
+    ) -> OfElement<'e, D, L, M, NV, NS> {
         OfElement {
             element: self.element,
             values: &self.values,
@@ -263,72 +252,68 @@ impl<'a, L: Law<M>, const M: usize, const NV: usize, const NS: usize> Evaluation
     }
 }
 
-impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Kernel for Laws<L, M, NV, NS> {
-    type Element = LawElement<L, NV, NS>;
+impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> Kernel
+    for LawElement<L, M, NV, NS>
+{
     type Storage = ();
 
     const VIRTUAL: usize = Plain::<L, M>::VIRTUAL;
     const APPLIED: bool = Plain::<L, M>::APPLIED;
+    const KINETIC: bool = Plain::<L, M>::KINETIC;
     const READINGS: usize = Plain::<L, M>::READINGS;
     const ISOTROPIC: bool = Plain::<L, M>::ISOTROPIC;
 
-    fn virtuals(element: &Self::Element) -> usize {
+    fn virtuals(&self) -> usize {
         let readings = Self::VIRTUAL.checked_div(Evaluation::<L, M, NV, NS>::BASE);
-        readings.unwrap_or(0) * Self::vectors(element)
+        readings.unwrap_or(0) * self.vectors()
     }
 
-    fn vectors(element: &Self::Element) -> usize {
-        Evaluation::<L, M, NV, NS>::BASE + element.moves.len()
+    fn vectors(&self) -> usize {
+        Evaluation::<L, M, NV, NS>::BASE + self.moves.len()
     }
 
-    fn scalars(element: &Self::Element) -> usize {
-        NS + element.parameters.len()
+    fn scalars(&self) -> usize {
+        NS + self.parameters.len()
     }
 
-    fn vector(element: &Self::Element, i: usize) -> VectorArg {
-        let vectors = Self::vectors(element);
+    fn vector(&self, i: usize) -> VectorArg {
+        let vectors = self.vectors();
         let (reading, a, base) = (i / vectors, i % vectors, Evaluation::<L, M, NV, NS>::BASE);
         match a.checked_sub(base) {
-            None => element.vectors[reading * base + a],
+            None => self.vectors[reading * base + a],
             Some(moved) => {
-                let Move { of, vector, .. } = element.moves[moved];
-                let VectorArg { stencil, .. } = element.vectors[reading * base + of];
+                let Move { of, vector, .. } = self.moves[moved];
+                let VectorArg { stencil, .. } = self.vectors[reading * base + of];
                 VectorArg { vector, stencil }
             }
         }
     }
 
-    fn scalar(element: &Self::Element, s: usize) -> Option<(usize, f64)> {
+    fn scalar(&self, s: usize) -> Option<(usize, f64)> {
         let scalar = match s.checked_sub(NS) {
-            None => element.scalars[s],
-            Some(a) => element.parameters[a],
+            None => self.scalars[s],
+            Some(a) => self.parameters[a],
         };
         Some((scalar, 1.0))
     }
 
-    fn energy(element: &Self::Element, sample: &Sample<'_>) -> f64 {
-        let at = Evaluation::<L, M, NV, NS>::new(element, Order::Gradient, sample);
+    fn energy(&self, sample: &Sample<'_>) -> f64 {
+        let at = Evaluation::<L, M, NV, NS>::new(self, Order::Gradient, sample);
         let parameters = at.parameters();
         let mut p = at.moved(parameters, |i, arg| match i < Self::VIRTUAL {
             true => sample.vectors[1][arg.vector] - sample.vectors[0][arg.vector],
             false => arg.read(sample.h, sample.vectors),
         });
-        for (i, &s) in element.scalars.iter().enumerate() {
+        for (i, &s) in self.scalars.iter().enumerate() {
             p[3 * NV + i] = sample.scalars[s];
         }
-        let formula = element.law.formula(parameters);
+        let formula = self.law.formula(parameters);
         formula.at::<1>(&p, &SVector::zeros()).value()
     }
 
-    fn derivatives<S: Scatter>(
-        element: &Self::Element,
-        order: Order,
-        sample: &Sample<'_>,
-        (): &(),
-        to: &mut S,
-    ) {
+    fn derivatives<S: Scatter>(&self, order: Order, sample: &Sample<'_>, (): &(), to: &mut S) {
         debug_assert!(S::receives(order));
-        let at = Evaluation::<L, M, NV, NS>::new(element, order, sample);
+        let at = Evaluation::<L, M, NV, NS>::new(self, order, sample);
         if const { matches!(S::ORDER, Some(Order::Gradient)) } {
             at.hand::<1, S>(to);
         } else if const { matches!(S::ORDER, Some(Order::Hessian)) } {
@@ -361,9 +346,9 @@ pub struct Move {
     pub at: f64,
 }
 
-/// One element: a law, its arguments, and the parameters that it reads.
+/// One element: a law of `M = 3 NV + NS` arguments, these, and the parameters that it reads.
 #[derive(Clone, Debug)]
-pub struct LawElement<L, const NV: usize, const NS: usize> {
+pub struct LawElement<L, const M: usize, const NV: usize, const NS: usize> {
     /// The law.
     pub law: L,
     /// Vectors, in the order of the arguments.
@@ -376,12 +361,9 @@ pub struct LawElement<L, const NV: usize, const NS: usize> {
     pub moves: Vec<Move>,
 }
 
-impl<L, const NV: usize, const NS: usize> LawElement<L, NV, NS> {
+impl<L: Law<M>, const M: usize, const NV: usize, const NS: usize> LawElement<L, M, NV, NS> {
     /// The element of a formula that it is where it reads no parameter.
-    pub fn given<const M: usize>(&self) -> Option<Element<L::Formula<f64>, NV, NS>>
-    where
-        L: Law<M>,
-    {
+    pub fn given(&self) -> Option<Element<L::Formula<f64>, M, NV, NS>> {
         self.parameters.is_empty().then(|| Element {
             energy: self.law.formula(&[]),
             vectors: self.vectors,
@@ -417,8 +399,8 @@ impl<const NV: usize, const NS: usize> ByParameter<NV, NS> {
 }
 
 /// Derivatives by the arguments of an element from those by the arguments of its formula, or rates from rates.
-pub(super) struct OfElement<'a, D, L, const NV: usize, const NS: usize> {
-    pub(super) element: &'a LawElement<L, NV, NS>,
+pub(super) struct OfElement<'a, D, L, const M: usize, const NV: usize, const NS: usize> {
+    pub(super) element: &'a LawElement<L, M, NV, NS>,
     pub(super) values: &'a Values<f64>,
     /// Number of vectors of the formula.
     pub(super) base: usize,
@@ -428,7 +410,9 @@ pub(super) struct OfElement<'a, D, L, const NV: usize, const NS: usize> {
     pub(super) by: &'a [ByParameter<NV, NS>],
 }
 
-impl<D: Derivatives, L, const NV: usize, const NS: usize> OfElement<'_, D, L, NV, NS> {
+impl<D: Derivatives, L, const M: usize, const NV: usize, const NS: usize>
+    OfElement<'_, D, L, M, NV, NS>
+{
     /// Argument of the formula that argument `i` of the element enters, the factor, and the parameter that is the factor.
     fn argument(&self, i: usize) -> (usize, f64, Option<usize>) {
         let vectors = self.base + self.element.moves.len();
@@ -446,8 +430,8 @@ impl<D: Derivatives, L, const NV: usize, const NS: usize> OfElement<'_, D, L, NV
     }
 }
 
-impl<D: Derivatives, L, const NV: usize, const NS: usize> Derivatives
-    for OfElement<'_, D, L, NV, NS>
+impl<D: Derivatives, L, const M: usize, const NV: usize, const NS: usize> Derivatives
+    for OfElement<'_, D, L, M, NV, NS>
 {
     fn force(&self, i: usize) -> Vector {
         let (argument, factor, _) = self.argument(i);

@@ -7,7 +7,6 @@ use crate::functional::{
     SumDerivatives, VectorArg,
 };
 use crate::math::{Derivatives, Matrix, Vector};
-use std::marker::PhantomData;
 
 /// The gradient of a quantity.
 struct Gradient<'a, K: Kernel> {
@@ -72,8 +71,9 @@ impl<K: Kernel> Weighted<'_, K> {
 impl<K: Kernel> Group<K> {
     /// All that its elements read of vectors.
     fn read(&self) -> impl Iterator<Item = VectorArg> + '_ {
-        let of = |e| (0..K::vectors(e) * K::READINGS).map(move |i| K::vector(e, i));
-        self.elements.iter().flat_map(of)
+        self.elements
+            .iter()
+            .flat_map(|e| (0..e.vectors() * K::READINGS).map(move |i| e.vector(i)))
     }
 }
 
@@ -101,8 +101,9 @@ impl<K: Kernel> Measure for Group<K> {
     }
 
     fn vectors(&self) -> Vec<usize> {
-        let of = |e| (0..K::vectors(e)).map(move |a| K::vector(e, a).vector);
-        self.elements.iter().flat_map(of).collect()
+        let elements = self.elements.iter();
+        let read = elements.flat_map(|e| (0..e.vectors()).map(move |a| e.vector(a).vector));
+        read.collect()
     }
 
     fn scalars(&self) -> Vec<usize> {
@@ -122,7 +123,7 @@ impl<K: Kernel> Measure for Group<K> {
     }
 
     fn value(&self, sample: &Sample<'_>) -> f64 {
-        let value = |element| K::energy(element, sample);
+        let value = |element: &K| element.energy(sample);
         self.scale * self.elements.iter().map(value).sum::<f64>()
     }
 
@@ -130,10 +131,10 @@ impl<K: Kernel> Measure for Group<K> {
         let mut sum = 0.0;
         for element in &self.elements {
             let mut storage = K::Storage::default();
-            K::prepare(element, Order::Gradient, sample, &mut storage);
+            element.prepare(Order::Gradient, sample, &mut storage);
             let v = Rates::new(element, sample);
             let mut along = AlongRates::<K> { v, sum };
-            K::derivatives(element, Order::Gradient, sample, &storage, &mut along);
+            element.derivatives(Order::Gradient, sample, &storage, &mut along);
             sum = along.sum;
         }
         -self.scale * sum / sample.h
@@ -143,7 +144,7 @@ impl<K: Kernel> Measure for Group<K> {
         let order = Order::Gradient;
         for element in &self.elements {
             let mut storage = K::Storage::default();
-            K::prepare(element, order, sample, &mut storage);
+            element.prepare(order, sample, &mut storage);
             let mut gradient = Gradient::<K> {
                 places: Places::new(element, Slots::default(), sample),
                 c: self.scale,
@@ -152,7 +153,7 @@ impl<K: Kernel> Measure for Group<K> {
                     rows: &mut *rows,
                 },
             };
-            K::derivatives(element, order, sample, &storage, &mut gradient);
+            element.derivatives(order, sample, &storage, &mut gradient);
         }
     }
 
@@ -181,7 +182,7 @@ impl<K: Kernel> Measure for Group<K> {
                     h: sample.h,
                     part: &mut *part,
                 };
-                K::derivatives(element, order, sample, storage, &mut weighted);
+                element.derivatives(order, sample, storage, &mut weighted);
             },
         );
     }
@@ -218,47 +219,46 @@ impl<D: Derivatives> Derivatives for OfQuantity<'_, D> {
     }
 }
 
-/// Elements of a kernel that a curved function is taken of: all their arguments couple.
-#[derive(Debug)]
-pub struct Curved<K>(PhantomData<K>);
+/// An element of which a curved function is taken: all its arguments couple.
+#[derive(Clone, Debug)]
+pub struct Curved<K>(pub K);
 
 impl<K: Kernel> Kernel for Curved<K> {
-    type Element = K::Element;
     type Storage = K::Storage;
 
     const READINGS: usize = K::READINGS;
 
-    fn vectors(element: &K::Element) -> usize {
-        K::vectors(element)
+    fn vectors(&self) -> usize {
+        self.0.vectors()
     }
 
-    fn scalars(element: &K::Element) -> usize {
-        K::scalars(element)
+    fn scalars(&self) -> usize {
+        self.0.scalars()
     }
 
-    fn vector(element: &K::Element, i: usize) -> VectorArg {
-        K::vector(element, i)
+    fn vector(&self, i: usize) -> VectorArg {
+        self.0.vector(i)
     }
 
-    fn scalar(element: &K::Element, s: usize) -> Option<(usize, f64)> {
-        K::scalar(element, s)
+    fn scalar(&self, s: usize) -> Option<(usize, f64)> {
+        self.0.scalar(s)
     }
 
-    fn energy(element: &K::Element, sample: &Sample<'_>) -> f64 {
-        K::energy(element, sample)
+    fn energy(&self, sample: &Sample<'_>) -> f64 {
+        self.0.energy(sample)
     }
 
-    fn prepare(element: &K::Element, order: Order, sample: &Sample<'_>, storage: &mut K::Storage) {
-        K::prepare(element, order, sample, storage);
+    fn prepare(&self, order: Order, sample: &Sample<'_>, storage: &mut K::Storage) {
+        self.0.prepare(order, sample, storage);
     }
 
     fn derivatives<S: Scatter>(
-        element: &K::Element,
+        &self,
         order: Order,
         sample: &Sample<'_>,
         storage: &K::Storage,
         to: &mut S,
     ) {
-        K::derivatives(element, order, sample, storage, to);
+        self.0.derivatives(order, sample, storage, to);
     }
 }

@@ -10,7 +10,7 @@
 //! summands on one interval: forces ∂Ŝ/∂x, the blocks of ∂²Ŝ/∂x², and both contracted with a direction. How vectors follow from
 //! coordinates is none of its business.
 //!
-//! All terms but [`Inertia`] are a [`Group`] of elements of one kind, a [`Kernel`], whose [derivatives](crate::math::Derivatives) one loop adds up.
+//! All terms but [`Inertia`] are a [`Group`] of elements of one kind, each a [`Kernel`], whose [derivatives](crate::math::Derivatives) one loop adds up.
 
 mod border;
 mod couplings;
@@ -33,26 +33,21 @@ mod term;
 mod viscous_elements;
 
 pub use couplings::{BlockMask, Blocks, Coupling, Couplings, ParameterOrder};
-pub use finite_elements::{
-    Electrical, ElementField, ElementFields, FiniteElement, FiniteElements, Variations,
-    VariedElement, VariedElements,
-};
-pub use formulas::{Element, Formulas};
+pub use finite_elements::{Electrical, ElementField, FiniteElement, Variations, VariedElement};
+pub use formulas::Element;
 pub use group::Group;
 pub use impulse::{Displacement, Impulse, Turn};
 pub use inertia::{Inertia, Mass};
 pub use kernel::{Kernel, Scatter};
-pub use laws::{LawElement, Laws, MOST_PARAMETERS, Move};
+pub use laws::{LawElement, MOST_PARAMETERS, Move};
 pub use measured::Curved;
 pub use node_blocks::{NodeBlocks, NodeVolume, Pressures, ScalarPlace, VectorPlace};
-pub use paths::{Path, Paths};
-pub use pressure::{PressureFace, PressureFaces};
-pub use scaled::{Scaled, ScaledElement};
+pub use paths::Path;
+pub use pressure::PressureFace;
+pub use scaled::ScaledElement;
 pub use stencil::{ScalarArg, Stencil, VectorArg};
 pub use sum::Sum;
 pub use term::{
     Functional, Horizon, Measure, Order, Outer, Output, Sample, SumDerivatives, Term, TermKind,
 };
-pub use viscous_elements::{
-    MaxwellElement, MaxwellElements, POINTS, ViscousElement, ViscousElements,
-};
+pub use viscous_elements::{MaxwellElement, POINTS, ViscousElement};

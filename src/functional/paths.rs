@@ -21,7 +21,7 @@ use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
 use nalgebra::Vector3;
 use std::cell::Cell;
 
-/// A path and the energy of its length, whose constants may follow from free parameters.
+/// A path and the energy of its length, whose constants may follow from free parameters; arguments are one a span, then one a move.
 #[derive(Clone, Debug)]
 pub struct Path {
     /// Constants of the energy.
@@ -33,10 +33,6 @@ pub struct Path {
     /// Those that move spans.
     pub moves: Vec<Move>,
 }
-
-/// The kind of elements that are paths: one argument a span, then one a move, as many as a path has.
-#[derive(Debug)]
-pub enum Paths {}
 
 /// A span at the midpoint of an interval, and its rates along the direction.
 #[derive(Clone, Copy)]
@@ -315,47 +311,40 @@ impl Derivatives for Rates<'_> {
     }
 }
 
-impl Kernel for Paths {
-    type Element = Path;
+impl Kernel for Path {
     type Storage = ();
 
-    fn vectors(path: &Path) -> usize {
-        path.spans.len() + path.moves.len()
+    fn vectors(&self) -> usize {
+        self.spans.len() + self.moves.len()
     }
 
-    fn scalars(path: &Path) -> usize {
-        path.parameters.len()
+    fn scalars(&self) -> usize {
+        self.parameters.len()
     }
 
-    fn vector(path: &Path, i: usize) -> VectorArg {
-        Stencil::Mid.of(match path.argument(i) {
-            (span, None) => path.spans[span],
+    fn vector(&self, i: usize) -> VectorArg {
+        Stencil::Mid.of(match self.argument(i) {
+            (span, None) => self.spans[span],
             (_, Some(one)) => one.vector,
         })
     }
 
-    fn scalar(path: &Path, s: usize) -> Option<(usize, f64)> {
-        Some((path.parameters[s], 1.0))
+    fn scalar(&self, s: usize) -> Option<(usize, f64)> {
+        Some((self.parameters[s], 1.0))
     }
 
-    fn energy(path: &Path, sample: &Sample<'_>) -> f64 {
-        path.taut(sample, &|place| sample.scalars[path.parameters[place]])[0]
+    fn energy(&self, sample: &Sample<'_>) -> f64 {
+        self.taut(sample, &|place| sample.scalars[self.parameters[place]])[0]
     }
 
-    fn derivatives<S: Scatter>(
-        path: &Path,
-        order: Order,
-        sample: &Sample<'_>,
-        (): &(),
-        to: &mut S,
-    ) {
-        let given = |place: usize| sample.scalars[path.parameters[place]];
-        let [_, tension, stiffness, stiffening] = path.taut(sample, &given);
+    fn derivatives<S: Scatter>(&self, order: Order, sample: &Sample<'_>, (): &(), to: &mut S) {
+        let given = |place: usize| sample.scalars[self.parameters[place]];
+        let [_, tension, stiffness, stiffening] = self.taut(sample, &given);
         if tension == 0.0 {
             return;
         }
         let mut taut = Taut {
-            path,
+            path: self,
             sample,
             order,
             tension,
@@ -366,7 +355,7 @@ impl Kernel for Paths {
         };
         to.plain(&taut);
         if order == Order::Third {
-            taut.stretch = (0..path.spans.len()).map(|i| taut.span(i).stretch).sum();
+            taut.stretch = (0..self.spans.len()).map(|i| taut.span(i).stretch).sum();
             to.along(&taut, &Rates(&taut));
         }
     }

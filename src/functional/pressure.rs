@@ -12,7 +12,7 @@ use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, Matrix, Vector};
 use crate::mesh::CORNERS;
 
-/// One face under a pressure.
+/// One face under a pressure; arguments are the virtual displacements of the nodes and their places.
 #[derive(Clone, Debug)]
 pub struct PressureFace {
     /// Vectors of the nodes, counter-clockwise seen from outside.
@@ -20,10 +20,6 @@ pub struct PressureFace {
     /// Scalar of the pressure in MPa.
     pub pressure: usize,
 }
-
-/// The kind of elements that are faces under a pressure; arguments are the virtual displacements of the nodes and their places.
-#[derive(Debug)]
-pub enum PressureFaces {}
 
 /// The table A.
 const TABLE: [[[f64; 4]; 4]; 4] = {
@@ -123,8 +119,7 @@ impl Derivatives for Along<'_> {
     }
 }
 
-impl Kernel for PressureFaces {
-    type Element = PressureFace;
+impl Kernel for PressureFace {
     type Storage = ();
 
     const DEGREE: usize = 4;
@@ -136,46 +131,40 @@ impl Kernel for PressureFaces {
         (i < 4) != (j < 4) || i >= 4 && i != j
     }
 
-    fn vectors(_: &PressureFace) -> usize {
+    fn vectors(&self) -> usize {
         4
     }
 
-    fn scalars(_: &PressureFace) -> usize {
+    fn scalars(&self) -> usize {
         1
     }
 
-    fn vector(element: &PressureFace, i: usize) -> VectorArg {
-        Stencil::Mid.of(element.nodes[i % 4])
+    fn vector(&self, i: usize) -> VectorArg {
+        Stencil::Mid.of(self.nodes[i % 4])
     }
 
-    fn scalar(element: &PressureFace, _: usize) -> Option<(usize, f64)> {
-        Some((element.pressure, 1.0))
+    fn scalar(&self, _: usize) -> Option<(usize, f64)> {
+        Some((self.pressure, 1.0))
     }
 
-    fn energy(element: &PressureFace, sample: &Sample<'_>) -> f64 {
+    fn energy(&self, sample: &Sample<'_>) -> f64 {
         let [before, after] = sample.vectors;
-        let forces = forces(&middle(sample.vectors, &element.nodes));
-        let moves = element.nodes.iter().map(|&v| after[v] - before[v]);
+        let forces = forces(&middle(sample.vectors, &self.nodes));
+        let moves = self.nodes.iter().map(|&v| after[v] - before[v]);
         let work: f64 = moves.zip(&forces).map(|(step, f)| step.dot(f)).sum();
-        sample.scalars[element.pressure] * work
+        sample.scalars[self.pressure] * work
     }
 
-    fn derivatives<S: Scatter>(
-        element: &PressureFace,
-        order: Order,
-        sample: &Sample<'_>,
-        (): &(),
-        to: &mut S,
-    ) {
-        let x = middle(sample.vectors, &element.nodes);
+    fn derivatives<S: Scatter>(&self, order: Order, sample: &Sample<'_>, (): &(), to: &mut S) {
+        let x = middle(sample.vectors, &self.nodes);
         let plain = Plain {
-            pressure: sample.scalars[element.pressure],
+            pressure: sample.scalars[self.pressure],
             x,
             forces: forces(&x),
         };
         to.plain(&plain);
         if order == Order::Third {
-            let w = middle(sample.along, &element.nodes);
+            let w = middle(sample.along, &self.nodes);
             to.along(&plain, &Along { plain: &plain, w });
         }
     }

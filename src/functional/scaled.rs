@@ -6,8 +6,6 @@
 use crate::energy::Coefficient;
 use crate::functional::{Kernel, Order, Sample, Scatter, VectorArg};
 use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
-use std::fmt;
-use std::marker::PhantomData;
 
 /// Most parameters that one element follows: a viscous one of a Maxwell branch follows its modulus and its relaxation time.
 const MOST: usize = 2;
@@ -66,15 +64,6 @@ impl<E> ScaledElement<E> {
     }
 }
 
-/// Elements of the kind `K` times constants.
-pub struct Scaled<K>(PhantomData<K>);
-
-impl<K> fmt::Debug for Scaled<K> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "elements times free parameters")
-    }
-}
-
 /// Derivatives of c E from those of E, or of its contraction from those of the contraction of E.
 struct Times<'a, D> {
     factor: Factor,
@@ -125,9 +114,9 @@ impl<D: Derivatives> Derivatives for Times<'_, D> {
     }
 }
 
-/// Hands the derivatives of an element of the kind `K` on with its constant.
+/// Hands the derivatives of an element on with its constant.
 struct WithFactor<'a, K: Kernel, S> {
-    element: &'a ScaledElement<K::Element>,
+    element: &'a ScaledElement<K>,
     factor: Factor,
     sample: &'a Sample<'a>,
     to: &'a mut S,
@@ -138,7 +127,7 @@ impl<K: Kernel, S> WithFactor<'_, K, S> {
     fn times<'d, D>(&self, of: &'d D, value: f64) -> Times<'d, D> {
         Times {
             factor: self.factor,
-            base: K::scalars(&self.element.of),
+            base: self.element.of.scalars(),
             of,
             value,
         }
@@ -149,15 +138,15 @@ impl<K: Kernel, S> WithFactor<'_, K, S> {
         let (element, sample) = (&self.element.of, self.sample);
         let mut sum = 0.0;
         let arguments = match K::VIRTUAL {
-            0 => K::vectors(element) * K::READINGS,
-            _ => K::virtuals(element),
+            0 => element.vectors() * K::READINGS,
+            _ => element.virtuals(),
         };
         for i in 0..arguments {
-            let direction = K::vector(element, i).read(sample.h, sample.along);
+            let direction = element.vector(i).read(sample.h, sample.along);
             sum += d.force(i).dot(&direction);
         }
-        for s in (0..K::scalars(element)).filter(|_| K::VIRTUAL == 0) {
-            if let Some((scalar, factor)) = K::scalar(element, s) {
+        for s in (0..element.scalars()).filter(|_| K::VIRTUAL == 0) {
+            if let Some((scalar, factor)) = element.scalar(s) {
                 sum += d.row(s) * factor * sample.scalars_along[scalar];
             }
         }
@@ -181,74 +170,70 @@ impl<K: Kernel, S: Scatter> Scatter for WithFactor<'_, K, S> {
     }
 }
 
-impl<K: Kernel> Kernel for Scaled<K> {
-    type Element = ScaledElement<K::Element>;
+impl<K: Kernel> Kernel for ScaledElement<K> {
     type Storage = K::Storage;
 
     const VIRTUAL: usize = K::VIRTUAL;
     const APPLIED: bool = K::APPLIED;
+    const KINETIC: bool = K::KINETIC;
     const READINGS: usize = K::READINGS;
     const ISOTROPIC: bool = K::ISOTROPIC;
     const BY_DURATION: bool = K::BY_DURATION;
     const PARTS: Option<[&'static str; 2]> = K::PARTS;
 
-    fn virtuals(element: &Self::Element) -> usize {
-        K::virtuals(&element.of)
+    fn virtuals(&self) -> usize {
+        self.of.virtuals()
     }
 
     fn couples(i: usize, j: usize) -> bool {
         K::couples(i, j)
     }
 
-    fn vectors(element: &Self::Element) -> usize {
-        K::vectors(&element.of)
+    fn vectors(&self) -> usize {
+        self.of.vectors()
     }
 
-    fn scalars(element: &Self::Element) -> usize {
-        K::scalars(&element.of) + element.parameters.len()
+    fn scalars(&self) -> usize {
+        self.of.scalars() + self.parameters.len()
     }
 
-    fn vector(element: &Self::Element, i: usize) -> VectorArg {
-        K::vector(&element.of, i)
+    fn vector(&self, i: usize) -> VectorArg {
+        self.of.vector(i)
     }
 
-    fn scalar(element: &Self::Element, s: usize) -> Option<(usize, f64)> {
-        match s.checked_sub(K::scalars(&element.of)) {
-            None => K::scalar(&element.of, s),
-            Some(place) => Some((element.parameters[place], 1.0)),
+    fn scalar(&self, s: usize) -> Option<(usize, f64)> {
+        match s.checked_sub(self.of.scalars()) {
+            None => self.of.scalar(s),
+            Some(place) => Some((self.parameters[place], 1.0)),
         }
     }
 
-    fn energy(element: &Self::Element, sample: &Sample<'_>) -> f64 {
-        element.value(sample) * K::energy(&element.of, sample)
+    fn energy(&self, sample: &Sample<'_>) -> f64 {
+        self.value(sample) * self.of.energy(sample)
     }
 
-    fn first_part(element: &Self::Element, sample: &Sample<'_>) -> f64 {
-        element.value(sample) * K::first_part(&element.of, sample)
+    fn first_part(&self, sample: &Sample<'_>) -> f64 {
+        self.value(sample) * self.of.first_part(sample)
     }
 
-    fn prepare(
-        element: &Self::Element,
-        order: Order,
-        sample: &Sample<'_>,
-        storage: &mut Self::Storage,
-    ) {
-        K::prepare(&element.of, order, sample, storage);
+    fn prepare(&self, order: Order, sample: &Sample<'_>, storage: &mut Self::Storage) {
+        self.of.prepare(order, sample, storage);
     }
 
     fn derivatives<S: Scatter>(
-        element: &Self::Element,
+        &self,
         order: Order,
         sample: &Sample<'_>,
         storage: &Self::Storage,
         to: &mut S,
     ) {
         let mut with_factor = WithFactor::<K, S> {
-            element,
-            factor: element.factor(sample),
+            element: self,
+            factor: self.factor(sample),
             sample,
             to,
         };
-        K::derivatives(&element.of, order, sample, storage, &mut with_factor);
+        self.of
+            .derivatives(order, sample, storage, &mut with_factor);
     }
 }

@@ -57,7 +57,7 @@ pub(super) const ALL: Range<usize> = 0..usize::MAX;
 
 /// One element with its arguments, and the positions of its derivatives.
 pub(super) struct Places<'a, K: Kernel> {
-    element: &'a K::Element,
+    element: &'a K,
     slots: Slots<'a>,
     h: f64,
     mask: BlockMask,
@@ -65,7 +65,7 @@ pub(super) struct Places<'a, K: Kernel> {
 
 impl<'a, K: Kernel> Places<'a, K> {
     #[inline(always)]
-    pub(super) fn new(element: &'a K::Element, slots: Slots<'a>, sample: &Sample<'_>) -> Self {
+    pub(super) fn new(element: &'a K, slots: Slots<'a>, sample: &Sample<'_>) -> Self {
         Self {
             element,
             slots,
@@ -83,11 +83,11 @@ impl<'a, K: Kernel> Places<'a, K> {
         of: &impl FirstDerivatives,
         to: &mut FirstSums<'_>,
     ) {
-        for i in 0..K::vectors(self.element) * K::READINGS {
+        for i in 0..self.element.vectors() * K::READINGS {
             if !rows.contains(&i) {
                 continue;
             }
-            let arg = K::vector(self.element, i);
+            let arg = self.element.vector(i);
             let weights = arg.stencil.weights(self.h);
             let force = of.by_vector(i) * c;
             for (side, forces) in to.forces.iter_mut().enumerate() {
@@ -96,8 +96,8 @@ impl<'a, K: Kernel> Places<'a, K> {
                 }
             }
         }
-        for s in 0..K::scalars(self.element) {
-            if let Some((at, factor)) = K::scalar(self.element, s) {
+        for s in 0..self.element.scalars() {
+            if let Some((at, factor)) = self.element.scalar(s) {
                 to.rows[at] += c * factor * of.by_scalar(s);
             }
         }
@@ -117,13 +117,13 @@ impl<'a, K: Kernel> Places<'a, K> {
             return self.at_nodes(c, rows, columns, d, nodes);
         }
         self.blocks(c, rows.clone(), columns, d, part);
-        let vectors = K::vectors(self.element);
+        let vectors = self.element.vectors();
         for i in 0..vectors * K::READINGS {
             if rows.contains(&i) {
                 self.columns(c, i, d, part);
             }
         }
-        for s in 0..K::scalars(self.element) {
+        for s in 0..self.element.scalars() {
             self.entries(c, s, d, part);
         }
     }
@@ -138,7 +138,7 @@ impl<'a, K: Kernel> Places<'a, K> {
         d: &D,
         part: &mut SumDerivatives,
     ) {
-        let vectors = K::vectors(self.element);
+        let vectors = self.element.vectors();
         for a in 0..vectors {
             for b in 0..vectors {
                 let Some(slot) = self.slots.vectors(a, b) else {
@@ -170,7 +170,7 @@ impl<'a, K: Kernel> Places<'a, K> {
     /// Adds c times the block of two arguments to the sums of the sides: rows of the instant `side / 2`, columns of `side % 2`.
     #[inline(always)]
     fn add_block(&self, c: f64, i: usize, j: usize, block: &Matrix, sums: &mut [Matrix; 4]) {
-        let weights = |i: usize| K::vector(self.element, i).stencil.weights(self.h);
+        let weights = |i: usize| self.element.vector(i).stencil.weights(self.h);
         let (wi, wj) = (weights(i), weights(j));
         for (side, sum) in sums.iter_mut().enumerate() {
             let weight = c * wi[side / 2] * wj[side % 2];
@@ -183,11 +183,11 @@ impl<'a, K: Kernel> Places<'a, K> {
     /// Adds the blocks of an argument and all scalars.
     #[inline(always)]
     fn columns<D: Derivatives>(&self, c: f64, i: usize, d: &D, part: &mut SumDerivatives) {
-        let vectors = K::vectors(self.element);
-        let weights = K::vector(self.element, i).stencil.weights(self.h);
-        for s in 0..K::scalars(self.element) {
+        let vectors = self.element.vectors();
+        let weights = self.element.vector(i).stencil.weights(self.h);
+        for s in 0..self.element.scalars() {
             let slot = self.slots.mixed(i % vectors, s);
-            if let (Some(slot), Some((_, factor))) = (slot, K::scalar(self.element, s)) {
+            if let (Some(slot), Some((_, factor))) = (slot, self.element.scalar(s)) {
                 let column = d.column(i, s) * (c * factor);
                 part.blocks.mixed[slot][0] += column * weights[0];
                 part.blocks.mixed[slot][1] += column * weights[1];
@@ -198,12 +198,12 @@ impl<'a, K: Kernel> Places<'a, K> {
     /// Adds the entries of a scalar and all others.
     #[inline(always)]
     fn entries<D: Derivatives>(&self, c: f64, s: usize, d: &D, part: &mut SumDerivatives) {
-        let Some((_, factor)) = K::scalar(self.element, s) else {
+        let Some((_, factor)) = self.element.scalar(s) else {
             return;
         };
-        for t in 0..K::scalars(self.element) {
+        for t in 0..self.element.scalars() {
             if let Some(slot) = self.slots.scalars(s, t)
-                && let Some((_, other)) = K::scalar(self.element, t)
+                && let Some((_, other)) = self.element.scalar(t)
             {
                 part.blocks.scalars[slot] += c * factor * other * d.entry(s, t);
             }
@@ -220,8 +220,8 @@ impl<'a, K: Kernel> Places<'a, K> {
         d: &D,
         nodes: &mut NodeBlocks,
     ) {
-        let vectors = K::vectors(self.element);
-        let vector = |i: usize| K::vector(self.element, i);
+        let vectors = self.element.vectors();
+        let vector = |i: usize| self.element.vector(i);
         for a in 0..vectors {
             for b in 0..vectors {
                 let Some(pair) = nodes.pair(vector(a).vector, vector(b).vector) else {
@@ -250,8 +250,8 @@ impl<'a, K: Kernel> Places<'a, K> {
             let read = weights.into_iter().zip(read).filter(|(_, read)| *read);
             read.map(|(weight, _)| weight).sum::<f64>()
         };
-        for s in 0..K::scalars(self.element) {
-            let Some((at, factor)) = K::scalar(self.element, s) else {
+        for s in 0..self.element.scalars() {
+            let Some((at, factor)) = self.element.scalar(s) else {
                 continue;
             };
             for i in (0..vectors * K::READINGS).filter(|i| rows.contains(i)) {
@@ -260,9 +260,9 @@ impl<'a, K: Kernel> Places<'a, K> {
                 let parts = [of_rows, of_columns].map(|read| column * sum(weights, read));
                 nodes.add_mixed(vector(i).vector, at, parts);
             }
-            for t in 0..K::scalars(self.element) {
+            for t in 0..self.element.scalars() {
                 // Each pair once, as among couplings.
-                if let Some((other, by)) = K::scalar(self.element, t)
+                if let Some((other, by)) = self.element.scalar(t)
                     && other <= at
                 {
                     nodes.add_scalars(at, other, c * factor * by * d.entry(s, t));
@@ -274,16 +274,16 @@ impl<'a, K: Kernel> Places<'a, K> {
     /// Adds c times the volume of an element, where a matrix of nodes asks for it, and what its pressure is off in the blocks.
     #[inline(always)]
     pub(super) fn volume(&self, c: f64, sample: &Sample<'_>, nodes: &mut NodeBlocks) {
-        let Some(volume) = K::volume(self.element, sample) else {
+        let Some(volume) = self.element.volume(sample) else {
             return;
         };
-        let vectors = std::array::from_fn(|i| K::vector(self.element, i).vector);
+        let vectors = std::array::from_fn(|i| self.element.vector(i).vector);
         let weight = self.weight(0, 0);
         let change = nodes.add_volume(vectors, &volume, [c, weight]);
         if change == 0.0 {
             return;
         }
-        let Some(curved) = K::curved_volume(self.element, sample) else {
+        let Some(curved) = self.element.curved_volume(sample) else {
             return;
         };
         for (row, a) in curved.iter().zip(vectors) {
@@ -298,7 +298,7 @@ impl<'a, K: Kernel> Places<'a, K> {
     /// Sum of the products of weights of two arguments over the blocks that are asked for.
     #[inline(always)]
     fn weight(&self, i: usize, j: usize) -> f64 {
-        let weights = |i: usize| K::vector(self.element, i).stencil.weights(self.h);
+        let weights = |i: usize| self.element.vector(i).stencil.weights(self.h);
         let (wi, wj) = (weights(i), weights(j));
         let sides = (0..4).filter(|&side| self.mask.blocks[side]);
         sides.map(|side| wi[side / 2] * wj[side % 2]).sum()
@@ -316,8 +316,8 @@ pub(super) struct Slots<'a> {
 impl<'a> Slots<'a> {
     /// The first slots of a list are those of the element; they are taken off it. A list without slots serves where no blocks are asked for.
     #[inline(always)]
-    pub(super) fn take<K: Kernel>(element: &K::Element, list: &mut &'a [u32]) -> Self {
-        let (vectors, scalars) = (K::vectors(element), K::scalars(element));
+    pub(super) fn take<K: Kernel>(element: &K, list: &mut &'a [u32]) -> Self {
+        let (vectors, scalars) = (element.vectors(), element.scalars());
         let count = match K::DEGREE >= 2 {
             true => vectors * (vectors + scalars) + scalars * scalars,
             false => 0,
@@ -359,7 +359,7 @@ impl<'a> Slots<'a> {
 
 /// Hands over the couplings of an element in the order of its slots; `has_scalars` is true if its scalars couple with each other.
 pub(super) fn couple<K: Kernel>(
-    element: &K::Element,
+    element: &K,
     has_scalars: bool,
     to: &mut dyn FnMut(Option<Coupling>),
 ) {
@@ -367,13 +367,13 @@ pub(super) fn couple<K: Kernel>(
         return;
     }
     Arguments {
-        vectors: K::vectors(element),
-        scalars: K::scalars(element),
+        vectors: element.vectors(),
+        scalars: element.scalars(),
         readings: K::READINGS,
         is_isotropic: K::ISOTROPIC,
         has_scalars,
-        vector: &|i| K::vector(element, i).vector,
-        scalar: &|s| K::scalar(element, s).map(|(at, _)| at),
+        vector: &|i| element.vector(i).vector,
+        scalar: &|s| element.scalar(s).map(|(at, _)| at),
         couples: K::couples,
     }
     .couple(to);

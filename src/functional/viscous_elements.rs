@@ -13,7 +13,7 @@ use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
 use crate::math::{Derivatives, Matrix, Vector};
 use std::sync::Arc;
 
-/// One viscous finite element.
+/// One viscous finite element; arguments are the virtual displacements of the nodes, their places and their velocities.
 #[derive(Clone, Debug)]
 pub struct ViscousElement<const NODES: usize = 8> {
     /// Gradients of the shape functions, which all elements of one place share.
@@ -23,11 +23,6 @@ pub struct ViscousElement<const NODES: usize = 8> {
     /// Vectors of the nodes.
     pub nodes: [usize; NODES],
 }
-
-/// The kind of elements that are viscous finite elements of `NODES` nodes; arguments are the virtual displacements of the nodes, their places and their
-/// velocities.
-#[derive(Debug)]
-pub enum ViscousElements<const NODES: usize = 8> {}
 
 /// Derivatives of the virtual work, and of its contraction.
 type ViscousVariations<const NODES: usize> =
@@ -84,8 +79,7 @@ impl<const NODES: usize> Derivatives for ViscousContraction<NODES> {
     }
 }
 
-impl<const NODES: usize> Kernel for ViscousElements<NODES> {
-    type Element = ViscousElement<NODES>;
+impl<const NODES: usize> Kernel for ViscousElement<NODES> {
     type Storage = ViscousVariations<NODES>;
 
     const VIRTUAL: usize = NODES;
@@ -99,33 +93,33 @@ impl<const NODES: usize> Kernel for ViscousElements<NODES> {
     }
 
     #[inline(always)]
-    fn vectors(_: &ViscousElement<NODES>) -> usize {
+    fn vectors(&self) -> usize {
         NODES
     }
 
     #[inline(always)]
-    fn vector(element: &ViscousElement<NODES>, i: usize) -> VectorArg {
+    fn vector(&self, i: usize) -> VectorArg {
         let (node, reading) = node::<NODES>(i);
         let stencil = match reading {
             2 => Stencil::Rate,
             _ => Stencil::Mid,
         };
-        stencil.of(element.nodes[node])
+        stencil.of(self.nodes[node])
     }
 
-    fn energy(element: &ViscousElement<NODES>, sample: &Sample<'_>) -> f64 {
-        let [x, v] = element.state(sample);
-        -sample.h * element.law.power(&element.shape, &x, &v)
+    fn energy(&self, sample: &Sample<'_>) -> f64 {
+        let [x, v] = self.state(sample);
+        -sample.h * self.law.power(&self.shape, &x, &v)
     }
 
     fn prepare(
-        element: &ViscousElement<NODES>,
+        &self,
         order: Order,
         sample: &Sample<'_>,
         Variations { plain, along }: &mut ViscousVariations<NODES>,
     ) {
-        let ViscousElement { shape, law, nodes } = element;
-        let [x, v] = element.state(sample);
+        let Self { shape, law, nodes } = self;
+        let [x, v] = self.state(sample);
         match order {
             Order::Gradient => law.forces(shape, &x, &v, &mut plain.forces),
             _ => law.tangent(shape, &x, &v, plain),
@@ -138,7 +132,7 @@ impl<const NODES: usize> Kernel for ViscousElements<NODES> {
 
     #[inline(always)]
     fn derivatives<S: Scatter>(
-        _: &ViscousElement<NODES>,
+        &self,
         order: Order,
         _: &Sample<'_>,
         variations: &ViscousVariations<NODES>,
@@ -151,7 +145,7 @@ impl<const NODES: usize> Kernel for ViscousElements<NODES> {
 /// Gauss points of an element.
 pub const POINTS: usize = 8;
 
-/// One branch of a finite element.
+/// One branch of a finite element; arguments are the nodes, then both vectors of each Gauss point.
 #[derive(Clone, Debug)]
 pub struct MaxwellElement<const NODES: usize = 8> {
     /// Gradients of the shape functions, which all elements of one place share.
@@ -163,11 +157,6 @@ pub struct MaxwellElement<const NODES: usize = 8> {
     /// Vectors (z₁, z₂, ·) and (a, b, c) of the viscous strain at each Gauss point.
     pub strains: [[usize; 2]; POINTS],
 }
-
-/// The kind of elements that are Maxwell branches of finite elements of `NODES` nodes; arguments are the nodes, then both vectors of each
-/// Gauss point.
-#[derive(Debug)]
-pub enum MaxwellElements<const NODES: usize = 8> {}
 
 /// Gauss point of an argument, and which of its vectors it is; `None` for a node.
 #[inline(always)]
@@ -244,8 +233,7 @@ impl<const NODES: usize> Derivatives for BranchLocal<NODES> {
     }
 }
 
-impl<const NODES: usize> Kernel for MaxwellElements<NODES> {
-    type Element = MaxwellElement<NODES>;
+impl<const NODES: usize> Kernel for MaxwellElement<NODES> {
     type Storage = Variations<BranchLocal<NODES>>;
 
     /// Strains of different points do not meet.
@@ -258,39 +246,39 @@ impl<const NODES: usize> Kernel for MaxwellElements<NODES> {
     }
 
     #[inline(always)]
-    fn vectors(_: &MaxwellElement<NODES>) -> usize {
+    fn vectors(&self) -> usize {
         NODES + 2 * POINTS
     }
 
     #[inline(always)]
-    fn vector(element: &MaxwellElement<NODES>, i: usize) -> VectorArg {
+    fn vector(&self, i: usize) -> VectorArg {
         Stencil::Mid.of(match point::<NODES>(i) {
-            None => element.nodes[i],
-            Some((g, part)) => element.strains[g][part],
+            None => self.nodes[i],
+            Some((g, part)) => self.strains[g][part],
         })
     }
 
-    fn energy(element: &MaxwellElement<NODES>, sample: &Sample<'_>) -> f64 {
-        let x = middle(sample.vectors, &element.nodes);
-        let strains = element.strains(sample.vectors);
-        element.law.energy(&element.shape, &x, &strains)
+    fn energy(&self, sample: &Sample<'_>) -> f64 {
+        let x = middle(sample.vectors, &self.nodes);
+        let strains = self.strains(sample.vectors);
+        self.law.energy(&self.shape, &x, &strains)
     }
 
     fn prepare(
-        element: &MaxwellElement<NODES>,
+        &self,
         order: Order,
         sample: &Sample<'_>,
         Variations { plain, along }: &mut Variations<BranchLocal<NODES>>,
     ) {
-        let MaxwellElement { shape, law, .. } = element;
-        let x = middle(sample.vectors, &element.nodes);
-        let strains = element.strains(sample.vectors);
+        let Self { shape, law, .. } = self;
+        let x = middle(sample.vectors, &self.nodes);
+        let strains = self.strains(sample.vectors);
         match order {
             Order::Gradient => law.gradient(shape, &x, &strains, plain),
             Order::Hessian => law.tangent(shape, &x, &strains, plain),
             Order::Third => {
-                let w = middle(sample.along, &element.nodes);
-                let rates = element.strains(sample.along);
+                let w = middle(sample.along, &self.nodes);
+                let rates = self.strains(sample.along);
                 law.third(shape, [&x, &w], [&strains, &rates], plain, along);
             }
         }
@@ -298,7 +286,7 @@ impl<const NODES: usize> Kernel for MaxwellElements<NODES> {
 
     #[inline(always)]
     fn derivatives<S: Scatter>(
-        _: &MaxwellElement<NODES>,
+        &self,
         order: Order,
         _: &Sample<'_>,
         variations: &Variations<BranchLocal<NODES>>,

@@ -459,7 +459,7 @@ pub(super) fn add_joint_springs(
                 vectors: [mid(terms.vector(coordinate))],
                 scalars: [],
             };
-            terms.add::<_, 3, 1, 0>(STOPS, "stops of", &joint.name, element);
+            terms.add(STOPS, "stops of", &joint.name, element);
         }
     }
     terms.without(ELASTICITY, "no joint that moves names a stiffness");

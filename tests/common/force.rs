@@ -3,7 +3,7 @@
 use nalgebra::{SVector, Vector3};
 use proboscis::coordinates::Reduced;
 use proboscis::energy::Energy;
-use proboscis::functional::{Element, Formulas, Functional, Group, Stencil, VectorArg};
+use proboscis::functional::{Element, Functional, Group, Stencil, VectorArg};
 use proboscis::kinematics::MaterialVector;
 use proboscis::math::Jet;
 use proboscis::model::system::InputKind;
@@ -36,7 +36,7 @@ pub fn with_control<E: Energy<4> + 'static>(
     vector: &MaterialVector,
 ) -> Model {
     let at = model.vectors.iter().position(|v| v == vector);
-    let element = Element {
+    let element = Element::<E, 4, 1, 1> {
         energy,
         vectors: [VectorArg {
             vector: at.expect("inertia reads this vector"),
@@ -44,7 +44,7 @@ pub fn with_control<E: Energy<4> + 'static>(
         }],
         scalars: [0],
     };
-    let control = Group::<Formulas<E, 4, 1, 1>>::intervals("control", -1.0, vec![element]);
+    let control = Group::intervals("control", -1.0, vec![element]);
     let Reduced {
         map,
         intervals,

@@ -19,9 +19,6 @@ struct Wave {
     charges: Vec<f64>,
 }
 
-#[derive(Debug)]
-enum Waves {}
-
 /// f′(u) and f″(u) of a function of u.
 struct OfSum<'a>(&'a Wave, [f64; 2]);
 
@@ -49,7 +46,7 @@ impl Derivatives for OfSum<'_> {
 
 impl Wave {
     fn sum(&self, h: f64, vectors: [&[Vector]; 2], scalar: impl Fn(ScalarArg) -> f64) -> f64 {
-        let read = |i| Waves::vector(self, i).read(h, vectors);
+        let read = |i| self.vector(i).read(h, vectors);
         let of_vectors = self
             .weights
             .iter()
@@ -60,51 +57,44 @@ impl Wave {
     }
 }
 
-impl Kernel for Waves {
-    type Element = Wave;
+impl Kernel for Wave {
     type Storage = ();
 
     const READINGS: usize = 2;
 
-    fn vectors(wave: &Wave) -> usize {
-        wave.vectors.len()
+    fn vectors(&self) -> usize {
+        self.vectors.len()
     }
 
-    fn scalars(wave: &Wave) -> usize {
-        wave.scalars.len()
+    fn scalars(&self) -> usize {
+        self.scalars.len()
     }
 
-    fn vector(wave: &Wave, i: usize) -> VectorArg {
-        let count = wave.vectors.len();
+    fn vector(&self, i: usize) -> VectorArg {
+        let count = self.vectors.len();
         VectorArg {
-            vector: wave.vectors[i % count],
+            vector: self.vectors[i % count],
             stencil: [Stencil::Mid, Stencil::Rate][i / count],
         }
     }
 
-    fn scalar(wave: &Wave, s: usize) -> Option<(usize, f64)> {
-        wave.scalars[s].scalar
+    fn scalar(&self, s: usize) -> Option<(usize, f64)> {
+        self.scalars[s].scalar
     }
 
-    fn energy(wave: &Wave, sample: &Sample<'_>) -> f64 {
+    fn energy(&self, sample: &Sample<'_>) -> f64 {
         let read = |arg: ScalarArg| arg.read(sample.scalars);
-        wave.sum(sample.h, sample.vectors, read).sin()
+        self.sum(sample.h, sample.vectors, read).sin()
     }
 
-    fn derivatives<S: Scatter>(
-        wave: &Wave,
-        order: Order,
-        sample: &Sample<'_>,
-        (): &(),
-        to: &mut S,
-    ) {
-        let u = wave.sum(sample.h, sample.vectors, |arg| arg.read(sample.scalars));
-        let plain = OfSum(wave, [u.cos(), -u.sin()]);
+    fn derivatives<S: Scatter>(&self, order: Order, sample: &Sample<'_>, (): &(), to: &mut S) {
+        let u = self.sum(sample.h, sample.vectors, |arg| arg.read(sample.scalars));
+        let plain = OfSum(self, [u.cos(), -u.sin()]);
         to.plain(&plain);
         if order == Order::Third {
             let rate = |arg: ScalarArg| arg.rate(sample.scalars_along);
-            let w = wave.sum(sample.h, sample.along, rate);
-            to.along(&plain, &OfSum(wave, [-u.sin() * w, -u.cos() * w]));
+            let w = self.sum(sample.h, sample.along, rate);
+            to.along(&plain, &OfSum(self, [-u.sin() * w, -u.cos() * w]));
         }
     }
 }
@@ -231,7 +221,7 @@ fn compare(
 #[test]
 fn one_scatter_serves_every_arity() {
     let (scale, waves_of_oracle) = (-0.8, waves());
-    let term = Group::<Waves>::intervals("waves", scale, waves());
+    let term = Group::intervals("waves", scale, waves());
     let sum = Functional::new(
         vec![std::sync::Arc::new(term)],
         Vec::new(),

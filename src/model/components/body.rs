@@ -96,7 +96,7 @@ fn point_mass(
         let mass = mass(&mut read);
         let law = KineticEnergy { mass };
         let element = read.element(law, [rate(centre)], []);
-        terms.add_kinetic_law(INERTIA, "mass of", &body.name, element);
+        terms.add_law(INERTIA, "mass of", &body.name, element);
     }
 }
 
@@ -114,7 +114,7 @@ fn turning(b: usize, body: &Body, place: &Attachment, terms: &mut Terms<'_>) {
             mass: euler[i].clone(),
         };
         let element = read.element(law, [rate(terms.vector(director))], []);
-        terms.add_kinetic_law(INERTIA, "mass of", &body.name, element);
+        terms.add_law(INERTIA, "mass of", &body.name, element);
     }
 }
 

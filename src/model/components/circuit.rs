@@ -140,7 +140,7 @@ pub(in crate::model) fn build_electrodes(
             vectors: [mid(charge)],
             scalars: [potential],
         };
-        terms.add::<_, 4, 1, 1>(ELECTRODE_CHARGES, WHY, &of.name, element);
+        terms.add(ELECTRODE_CHARGES, WHY, &of.name, element);
         let series = of.circuit.resistance.unwrap_or(0.0);
         let wires = Wires {
             source: of.source,

@@ -148,7 +148,7 @@ fn inertia(muscle: &Muscle, index: usize, span: usize, terms: &mut Terms<'_>) {
         ] {
             if let Some(mass) = constants.inertia(factor) {
                 let element = constants.element(mass, [rate(vector)], []);
-                terms.add_kinetic_law(INERTIA, OF_MASS, name, element);
+                terms.add_law(INERTIA, OF_MASS, name, element);
             }
         }
     }
@@ -156,7 +156,7 @@ fn inertia(muscle: &Muscle, index: usize, span: usize, terms: &mut Terms<'_>) {
         None => terms.without(SECTION, "no muscle with a density names section_inertia"),
         Some(section) => {
             let element = of_span.element(section, [mid(span), rate(span)], []);
-            terms.add_kinetic_law(SECTION, "density and section_inertia of", name, element);
+            terms.add_law(SECTION, "density and section_inertia of", name, element);
         }
     }
 }

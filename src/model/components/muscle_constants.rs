@@ -98,22 +98,22 @@ impl<'a> MuscleConstants<'a> {
     }
 
     /// The element of a law that reads them.
-    pub(in crate::model) fn element<L, const NV: usize, const NS: usize>(
+    pub(in crate::model) fn element<L, const M: usize, const NV: usize, const NS: usize>(
         self,
         law: L,
         vectors: [VectorArg; NV],
         scalars: [usize; NS],
-    ) -> LawElement<L, NV, NS> {
+    ) -> LawElement<L, M, NV, NS> {
         self.read.element(law, vectors, scalars)
     }
 
     /// The element of a law of what is read of them.
-    pub(in crate::model) fn with<L, const NV: usize, const NS: usize>(
+    pub(in crate::model) fn with<L, const M: usize, const NV: usize, const NS: usize>(
         &self,
         law: impl FnOnce(&mut Self) -> L,
         vectors: [VectorArg; NV],
         scalars: [usize; NS],
-    ) -> LawElement<L, NV, NS> {
+    ) -> LawElement<L, M, NV, NS> {
         let mut own = self.clone();
         let law = law(&mut own);
         own.element(law, vectors, scalars)

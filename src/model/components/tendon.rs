@@ -79,7 +79,7 @@ impl Tendon {
             parameters,
             moves,
         };
-        terms.add_path(ELASTICITY, "stiffness of", &self.name, path);
+        terms.add(ELASTICITY, "stiffness of", &self.name, path);
     }
 
     fn length(&self) -> f64 {

@@ -155,12 +155,12 @@ impl Read {
     }
 
     /// The element of a law that reads these parameters.
-    pub fn element<L, const NV: usize, const NS: usize>(
+    pub fn element<L, const M: usize, const NV: usize, const NS: usize>(
         self,
         law: L,
         vectors: [VectorArg; NV],
         scalars: [usize; NS],
-    ) -> LawElement<L, NV, NS> {
+    ) -> LawElement<L, M, NV, NS> {
         LawElement {
             law,
             vectors,

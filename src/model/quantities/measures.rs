@@ -2,12 +2,11 @@
 
 use crate::element::FieldPoint;
 use crate::energy::{
-    Angle, AngleStep, Coefficient, Energy, Law, Multiple, OutsideBox, PeakExcess,
-    PositionComponent, Projection, ProjectionStep, SquaredDistance, law,
+    Angle, AngleStep, Energy, Law, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
+    ProjectionStep, SquaredDistance, law,
 };
 use crate::functional::{
-    Curved, Element, ElementField, ElementFields, Formulas, Group, Kernel, LawElement, Laws,
-    Measure, Stencil, Term, VectorArg,
+    Curved, Element, ElementField, Group, Kernel, LawElement, Measure, Stencil, Term, VectorArg,
 };
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::{Jet, Number, Vector};
@@ -118,20 +117,19 @@ impl Shape {
     pub(super) fn law<L: Law<M>, const M: usize, const NV: usize, const NS: usize>(
         self,
         scale: f64,
-        element: LawElement<L, NV, NS>,
+        element: LawElement<L, M, NV, NS>,
     ) -> Box<dyn Measure> {
         match element.given() {
-            Some(given) => self.scaled::<Formulas<L::Formula<f64>, M, NV, NS>>(scale, given),
-            None => self.scaled::<Laws<L, M, NV, NS>>(scale, element),
+            Some(given) => self.scaled(scale, given),
+            None => self.scaled(scale, element),
         }
     }
 
     /// Measure of an element times a factor.
-    fn scaled<K: Kernel>(self, scale: f64, element: K::Element) -> Box<dyn Measure> {
-        let elements = vec![element];
+    fn scaled<K: Kernel>(self, scale: f64, element: K) -> Box<dyn Measure> {
         match self {
-            Self::Linear => Box::new(Group::<K>::intervals("measure", scale, elements)),
-            Self::Curved => Box::new(Group::<Curved<K>>::intervals("measure", scale, elements)),
+            Self::Linear => Box::new(Group::intervals("measure", scale, vec![element])),
+            Self::Curved => Box::new(Group::intervals("measure", scale, vec![Curved(element)])),
         }
     }
 }
@@ -215,7 +213,7 @@ impl<'k> Reading<'k, '_> {
     /// Measure of a law.
     pub(super) fn law<L: Law<M>, const M: usize, const NV: usize, const NS: usize>(
         &self,
-        element: LawElement<L, NV, NS>,
+        element: LawElement<L, M, NV, NS>,
     ) -> Made {
         Some(self.shape.law(1.0, element))
     }
@@ -239,12 +237,12 @@ impl<'k> Reading<'k, '_> {
     where
         E: Energy<M> + 'static,
     {
-        let element = Element {
+        let element = Element::<E, M, NV, NS> {
             energy,
             vectors,
             scalars,
         };
-        Some(self.shape.scaled::<Formulas<E, M, NV, NS>>(1.0, element))
+        Some(self.shape.scaled(1.0, element))
     }
 
     /// Scalar of a free parameter; none where parameters are put in.
@@ -297,7 +295,7 @@ impl<'k> Reading<'k, '_> {
             terminals: block.terminals(element),
             at: self.quantity.at.stencil(),
         };
-        Some(self.shape.scaled::<ElementFields>(1.0, field))
+        Some(self.shape.scaled(1.0, field))
     }
 
     /// Squared field of a lumped muscle over the one of the unit.
@@ -326,13 +324,13 @@ impl<'k> Reading<'k, '_> {
                 Amount::Volume => constants.volume(),
                 Amount::Mass => constants.mass(1.0)?,
             };
-            Some(constants.element(ConstantFormula(amount), [], []))
+            Some(constants.element::<_, 0, 0, 0>(ConstantFormula(amount), [], []))
         };
         let elements: Vec<_> = muscles.iter().filter_map(element).collect();
         let is_moved = elements.iter().any(|one| !one.parameters.is_empty());
         let scale = 1.0 / self.quantity.unit;
-        let group = Group::<Laws<ConstantFormula<Coefficient>, 0, 0, 0>>::intervals;
-        is_moved.then(|| Box::new(group("measure", scale, elements)) as Box<dyn Measure>)
+        let group = || Group::intervals("measure", scale, elements);
+        is_moved.then(|| Box::new(group()) as Box<dyn Measure>)
     }
 
     /// The constants of a muscle, whose span is the first vector of an element; given ones at the instants, where no parameter is read.

@@ -99,7 +99,7 @@ struct Parts {
 impl Parts {
     fn add<L: Law<M>, const M: usize, const NV: usize, const NS: usize>(
         &mut self,
-        element: LawElement<L, NV, NS>,
+        element: LawElement<L, M, NV, NS>,
     ) {
         self.list.push(Shape::Linear.law(1.0 / self.unit, element));
     }

@@ -13,7 +13,7 @@ use crate::model::layout::solids::Solids;
 use crate::model::model::Model;
 use crate::model::system::maxwell::{MaxwellBranch, Response};
 use crate::model::terms::parametric_elements::ElementOf;
-use crate::model::terms::{Call, Formula, GRAVITY, Terms, UNRELAXED, mid, rate, weight};
+use crate::model::terms::{Call, GRAVITY, Terms, UNRELAXED, mid, rate, weight};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -97,7 +97,7 @@ impl Solids {
                 why: "viscosity of",
                 of: &c.solid.name,
             }
-            .add_times::<(), _>(given, unit, factor, read, terms);
+            .add_times(given, unit, factor, read, terms);
         }
     }
 }
@@ -197,11 +197,11 @@ impl Solids {
             if a == b {
                 let law = KineticEnergy { mass };
                 let element = read.clone().element(law, [rate(a)], []);
-                terms.add_kinetic_law(INERTIA, why, name, element);
+                terms.add_law(INERTIA, why, name, element);
             } else {
                 let law = KineticCoupling { mass };
                 let element = read.clone().element(law, [rate(a), rate(b)], []);
-                terms.add_kinetic_law(INERTIA, why, name, element);
+                terms.add_law(INERTIA, why, name, element);
             }
         }
     }
@@ -266,7 +266,7 @@ impl Solids {
                         why: UNRELAXED,
                         of: &c.solid.name,
                     }
-                    .add_times::<(), _>(given, unit, factor, read, terms);
+                    .add_times(given, unit, factor, read, terms);
                 }
             }
         }
@@ -316,7 +316,7 @@ fn add_branch(
         };
         let given = element(relaxation_time * shear_modulus * volume);
         let (unit, read) = (element(*volume), read.clone());
-        viscosity.add_times::<Formula<18, false>, _>(given, unit, both.clone(), read, terms);
+        viscosity.add_times(given, unit, both.clone(), read, terms);
     }
     let element = |shear_modulus| MaxwellElement {
         shape: shape.clone(),
@@ -325,7 +325,7 @@ fn add_branch(
         strains,
     };
     let (given, unit) = (element(shear_modulus), element(1.0));
-    elasticity.add_times::<(), _>(given, unit, modulus, of_spring, terms);
+    elasticity.add_times(given, unit, modulus, of_spring, terms);
 }
 
 impl Model {

@@ -1,7 +1,7 @@
 //! Constraints that redundant coordinates leave open: rigid bodies and joints, times their multipliers.
 
-use crate::energy::{Coincidence, Energy, JointAngle, JointDisplacement, Orthogonality};
-use crate::functional::{Element, Formulas, Group, Stencil, Term};
+use crate::energy::{Coincidence, JointAngle, JointDisplacement, Orthogonality};
+use crate::functional::{Element, Group, Kernel, Stencil, Term};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::model::layout::internal::{InternalKind, Internals};
 use crate::model::layout::solids::Solids;
@@ -56,16 +56,14 @@ impl Made {
     }
 
     /// Adds a term of elements for the parts of the scene that are named; without elements it is left out.
-    fn add<E, const M: usize, const NV: usize, const NS: usize>(
+    fn add<K: Kernel>(
         &mut self,
         term: &'static str,
         scale: f64,
-        elements: Vec<Element<E, NV, NS>>,
+        elements: Vec<K>,
         reason: (&'static str, &[&str]),
         otherwise: &'static str,
-    ) where
-        E: Energy<M> + 'static,
-    {
+    ) {
         if elements.is_empty() {
             let why = otherwise;
             return self.left_out.push(LeftOut { term, why });
@@ -74,7 +72,7 @@ impl Made {
         for name in names {
             note(&mut self.present, term, why, name);
         }
-        let group = Group::<Formulas<E, M, NV, NS>>::instants(term, scale, elements);
+        let group = Group::instants(term, scale, elements);
         self.terms.push(Arc::new(group));
     }
 }
@@ -119,17 +117,17 @@ impl Builder<'_> {
             multipliers: all.names,
             ..Made::default()
         };
-        made.add::<_, 7, _, _>(RIGID, -h0, rigid, directors, "no body that moves");
+        made.add(RIGID, -h0, rigid, directors, "no body that moves");
         let none = "no joint that calls for one";
-        made.add::<_, 7, _, _>(DIRECTIONS, -h0, all.dots, ends, none);
-        made.add::<_, 6, _, _>(POINTS, -h0, points, ends, none);
+        made.add(DIRECTIONS, -h0, all.dots, ends, none);
+        made.add(POINTS, -h0, points, ends, none);
         let none = "no joint names a stiffness";
         let of: Vec<&str> = all.of.iter().map(String::as_str).collect();
         let of = ("stiffness of", &of[..]);
-        made.add::<_, 13, _, _>(COORDINATES, -h0, all.angles, of, none);
-        made.add::<_, 10, _, _>(COORDINATES, -h0, all.displacements, of, none);
+        made.add(COORDINATES, -h0, all.angles, of, none);
+        made.add(COORDINATES, -h0, all.displacements, of, none);
         let none = "no node is glued to a body that moves";
-        made.add::<_, 6, _, _>(GLUE, -h0, all.points, ("glued nodes of", &glued), none);
+        made.add(GLUE, -h0, all.points, ("glued nodes of", &glued), none);
         made
     }
 
@@ -183,10 +181,10 @@ impl Builder<'_> {
 /// Constraints collected for groups; multipliers are numbered in the order of the names.
 #[derive(Default)]
 struct Constraints {
-    dots: Vec<Element<Orthogonality, 2, 1>>,
-    points: Vec<Element<Coincidence, 1, 3>>,
-    angles: Vec<Element<JointAngle, 4, 1>>,
-    displacements: Vec<Element<JointDisplacement, 3, 1>>,
+    dots: Vec<Element<Orthogonality, 7, 2, 1>>,
+    points: Vec<Element<Coincidence, 6, 1, 3>>,
+    angles: Vec<Element<JointAngle, 13, 4, 1>>,
+    displacements: Vec<Element<JointDisplacement, 10, 3, 1>>,
     names: Vec<String>,
     /// Joints of the coordinates.
     of: Vec<String>,

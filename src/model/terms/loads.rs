@@ -207,7 +207,6 @@ impl Loaded<'_, '_> {
             vectors: [],
             scalars: [potential, self.size],
         };
-        self.terms
-            .add::<_, 2, 0, 2>(CHARGES, "the charge of", self.name, element);
+        self.terms.add(CHARGES, "the charge of", self.name, element);
     }
 }

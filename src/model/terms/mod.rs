@@ -9,13 +9,9 @@ pub(super) mod joint_constraints;
 pub(super) mod loads;
 pub(super) mod parametric_elements;
 
-use crate::element::ElementLaw;
-use crate::energy::{Coefficient, Energy, Gravity, Law, MaxwellDamper};
+use crate::energy::{Coefficient, Gravity, Law};
 use crate::functional::{
-    Electrical, Element, FiniteElement, FiniteElements, Formulas, Group, Inertia, Kernel,
-    LawElement, Laws, Mass, MaxwellElement, MaxwellElements, Path, Paths, PressureFace,
-    PressureFaces, Scaled, ScaledElement, Stencil, Term, VariedElement, VariedElements, VectorArg,
-    ViscousElement, ViscousElements,
+    Group, Inertia, Kernel, LawElement, Mass, ScaledElement, Stencil, Term, VectorArg,
 };
 use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::math::Vector;
@@ -79,14 +75,14 @@ pub(super) struct Call<'a> {
 
 impl Call<'_> {
     /// Adds an element.
-    pub(super) fn add<Kind, T: Member<Kind>>(self, element: T, terms: &mut Terms<'_>) {
+    pub(super) fn add<K: Kernel>(self, element: K, terms: &mut Terms<'_>) {
         terms.collect(self.term, self.why, self.of, element);
     }
 
     /// Adds an element, of those that are no formulas of constants, times a constant that follows parameters.
-    pub(super) fn add_scaled<E: OfKind>(
+    pub(super) fn add_scaled<K: Kernel>(
         self,
-        of: E,
+        of: K,
         factor: Coefficient,
         read: Read,
         terms: &mut Terms<'_>,
@@ -97,20 +93,20 @@ impl Call<'_> {
             factor,
             parameters,
         };
-        self.add::<(), _>(element, terms);
+        self.add(element, terms);
     }
 
     /// Adds an element as it is given, or where parameters are read that of the constant one times the constant.
-    pub(super) fn add_times<Kind, E: OfKind + Member<Kind>>(
+    pub(super) fn add_times<K: Kernel>(
         self,
-        given: E,
-        unit: E,
+        given: K,
+        unit: K,
         factor: Coefficient,
         read: Read,
         terms: &mut Terms<'_>,
     ) {
         match read.is_empty() {
-            true => self.add::<Kind, _>(given, terms),
+            true => self.add(given, terms),
             false => self.add_scaled(unit, factor, read, terms),
         }
     }
@@ -241,20 +237,12 @@ impl<'a> Terms<'a> {
         self.variables.input(source)
     }
 
-    /// Adds a formula of vectors of the intervals: a potential energy, or where it has virtual displacements a virtual work.
+    /// Adds an element of the intervals: an energy, or where it has virtual displacements a virtual work.
     ///
     /// `term` names the term in reports, which holds all elements of that name; `why` says what of the component `of` calls for
     /// it: "stiffness of".
-    pub fn add<E, const M: usize, const NV: usize, const NS: usize>(
-        &mut self,
-        term: &'static str,
-        why: &'static str,
-        of: &str,
-        element: Element<E, NV, NS>,
-    ) where
-        E: Energy<M> + 'static,
-    {
-        self.collect::<Formula<M, false>, _>(term, why, of, element);
+    pub fn add<K: Kernel>(&mut self, term: &'static str, why: &'static str, of: &str, element: K) {
+        self.collect(term, why, of, element);
     }
 
     /// Adds the formula of a law, like [`add`](Self::add); with the parameters that it reads where constants of it are free.
@@ -263,29 +251,13 @@ impl<'a> Terms<'a> {
         term: &'static str,
         why: &'static str,
         of: &str,
-        element: LawElement<L, NV, NS>,
+        element: LawElement<L, M, NV, NS>,
     ) where
         L: Law<M>,
     {
         match element.given() {
             Some(given) => self.add(term, why, of, given),
-            None => self.collect::<Formula<M, false>, _>(term, why, of, element),
-        }
-    }
-
-    /// Adds the kinetic energy of a law, like [`add_law`](Self::add_law).
-    pub(super) fn add_kinetic_law<L, const M: usize, const NV: usize, const NS: usize>(
-        &mut self,
-        term: &'static str,
-        why: &'static str,
-        of: &str,
-        element: LawElement<L, NV, NS>,
-    ) where
-        L: Law<M>,
-    {
-        match element.given() {
-            Some(given) => self.collect::<Formula<M, true>, _>(term, why, of, given),
-            None => self.collect::<Formula<M, true>, _>(term, why, of, element),
+            None => self.add(term, why, of, element),
         }
     }
 
@@ -317,11 +289,6 @@ impl<'a> Terms<'a> {
         }
     }
 
-    /// Adds the energy of the length of a path.
-    pub fn add_path(&mut self, term: &'static str, why: &'static str, of: &str, path: Path) {
-        self.collect::<(), _>(term, why, of, path);
-    }
-
     /// Says why a term is left out, should it be; the first reason counts.
     pub fn without(&mut self, term: &'static str, why: &'static str) {
         if self.left_out.iter().all(|known| known.term != term) {
@@ -339,7 +306,7 @@ impl<'a> Terms<'a> {
     }
 
     /// Adds an element to those of its type under the same name.
-    pub(super) fn collect<Kind, T: Member<Kind>>(
+    pub(super) fn collect<T: Member>(
         &mut self,
         term: &'static str,
         why: &'static str,
@@ -347,11 +314,11 @@ impl<'a> Terms<'a> {
         element: T,
     ) {
         self.note(term, why, of);
-        self.push::<Kind, T>(term, element);
+        self.push(term, element);
     }
 
     /// Adds an element whose parts of the scene are [noted](Self::note) by themselves.
-    pub(super) fn push<Kind, T: Member<Kind>>(&mut self, term: &'static str, element: T) {
+    pub(super) fn push<T: Member>(&mut self, term: &'static str, element: T) {
         let mut same = self.collected.iter_mut().filter(|c| c.term == term);
         if let Some(list) = same.find_map(|c| c.list.downcast_mut::<Vec<T>>()) {
             list.push(element);
@@ -397,7 +364,7 @@ pub fn rate(vector: usize) -> VectorArg {
 }
 
 /// Element that makes one term together with all of its type.
-pub(super) trait Member<Kind = ()>: Sized + 'static {
+pub(super) trait Member: Sized + 'static {
     fn term(name: &str, list: Vec<Self>) -> Box<dyn Term>;
 }
 
@@ -407,77 +374,12 @@ impl Member for Mass {
     }
 }
 
-/// An element that is no formula of constants, and its kind.
-pub(super) trait OfKind: Clone + Send + Sync + 'static {
-    type Kind: Kernel<Element = Self>;
-}
-
-impl<F: Electrical, L: ElementLaw> OfKind for FiniteElement<F, L> {
-    type Kind = FiniteElements<F, L>;
-}
-
-impl OfKind for VariedElement {
-    type Kind = VariedElements;
-}
-
-impl OfKind for ViscousElement {
-    type Kind = ViscousElements;
-}
-
-impl OfKind for MaxwellElement {
-    type Kind = MaxwellElements;
-}
-
-impl OfKind for Element<MaxwellDamper, 6, 0> {
-    type Kind = Formulas<MaxwellDamper, 18, 6, 0>;
-}
-
-impl OfKind for PressureFace {
-    type Kind = PressureFaces;
-}
-
-impl OfKind for Path {
-    type Kind = Paths;
-}
-
-impl<E: OfKind> OfKind for ScaledElement<E> {
-    type Kind = Scaled<E::Kind>;
-}
-
-/// Potentials are subtracted, virtual works added.
-impl<E: OfKind> Member for E {
+/// The action has the kinetic energy less the potential one; a virtual work is added.
+impl<K: Kernel> Member for K {
     fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        let scale = if E::Kind::VIRTUAL > 0 { 1.0 } else { -1.0 };
-        Box::new(Group::<E::Kind>::intervals(name, scale, list))
-    }
-}
-
-/// Elements of a formula of `M` arguments; `KINETIC` is true for a kinetic energy.
-pub(super) struct Formula<const M: usize, const KINETIC: bool>;
-
-impl<E, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool>
-    Member<Formula<M, KINETIC>> for Element<E, NV, NS>
-where
-    E: Energy<M> + 'static,
-{
-    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        // The action has the kinetic energy less the potential one; a virtual work is added.
-        let scale = if KINETIC || E::VIRTUAL > 0 { 1.0 } else { -1.0 };
-        Box::new(Group::<Formulas<E, M, NV, NS>>::intervals(
-            name, scale, list,
-        ))
-    }
-}
-
-impl<L, const M: usize, const NV: usize, const NS: usize, const KINETIC: bool>
-    Member<Formula<M, KINETIC>> for LawElement<L, NV, NS>
-where
-    L: Law<M>,
-{
-    fn term(name: &str, list: Vec<Self>) -> Box<dyn Term> {
-        let is_added = KINETIC || L::Formula::<f64>::VIRTUAL > 0;
+        let is_added = K::KINETIC || K::VIRTUAL > 0;
         let scale = if is_added { 1.0 } else { -1.0 };
-        Box::new(Group::<Laws<L, M, NV, NS>>::intervals(name, scale, list))
+        Box::new(Group::intervals(name, scale, list))
     }
 }
 

@@ -3,11 +3,11 @@
 
 use crate::element::{ElementLaw, IsochoricLaw};
 use crate::energy::{Coefficient, NeoHooke};
-use crate::functional::{FiniteElement, VariedElement};
+use crate::functional::{FiniteElement, Kernel, VariedElement};
 use crate::model::constants::constant::MaterialConstant;
 use crate::model::constants::free_parameters::Read;
 use crate::model::layout::solid_block::SolidBlock;
-use crate::model::terms::{Call, Member, OfKind, Terms};
+use crate::model::terms::{Call, Terms};
 
 /// Constants of an energy beside those of its law of elasticity, in all of which it is linear: μ, λ, c₁, c₂ and ε.
 const LINEAR: [MaterialConstant; 5] = [
@@ -213,14 +213,9 @@ impl ElementOf<'_> {
 }
 
 /// Adds an element, or the product of it with a factor.
-fn collect<E: OfKind + Member>(
-    call: Call<'_>,
-    element: E,
-    factor: Option<Factor>,
-    terms: &mut Terms<'_>,
-) {
+fn collect<K: Kernel>(call: Call<'_>, element: K, factor: Option<Factor>, terms: &mut Terms<'_>) {
     match factor {
-        None => call.add::<(), _>(element, terms),
+        None => call.add(element, terms),
         Some((factor, read)) => call.add_scaled(element, factor, read, terms),
     }
 }
