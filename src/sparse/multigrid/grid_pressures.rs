@@ -1,8 +1,7 @@
 //! Elements of a grid with their pressures. They count like their first nodes; there is none where a node is a last one along an axis.
 
 use crate::sparse::multigrid::node_grid::{
-    AtNode, Axis, Block, COMPONENTS, CORNERS, NEIGHBOURS, OWN, corners, indices, neighbour_of,
-    node_at,
+    Axis, CORNERS, NEIGHBOURS, corners, indices, neighbour_of, node_at,
 };
 use crate::sparse::multigrid::pressures::{Elements, Field};
 use std::ops::Range;
@@ -17,8 +16,8 @@ pub(super) struct GridElements {
     corners: [usize; CORNERS],
     /// Element of the next coarser grid that each is a part of; none of the coarsest grid.
     parents: Vec<u32>,
-    /// S, by element and neighbour.
-    schur: Vec<[f32; NEIGHBOURS]>,
+    /// Number of nodes; S is by element and neighbour.
+    count: usize,
 }
 
 impl GridElements {
@@ -38,7 +37,7 @@ impl GridElements {
             counts,
             corners: corners(counts),
             parents: parents.unwrap_or_default(),
-            schur: vec![[0.0; NEIGHBOURS]; nodes.len()],
+            count: nodes.len(),
         }
     }
 }
@@ -46,11 +45,11 @@ impl GridElements {
 impl Elements for GridElements {
     fn field(&self) -> Field {
         let [n_x, n_y, _] = self.counts;
-        Field::new(self.schur.len(), n_x * n_y + n_x + 1)
+        Field::new(self.count, n_x * n_y + n_x + 1)
     }
 
     fn slopes(&self) -> usize {
-        CORNERS * self.schur.len()
+        CORNERS * self.count
     }
 
     #[inline(always)]
@@ -63,66 +62,39 @@ impl Elements for GridElements {
         self.corners.iter().map(move |corner| element + corner)
     }
 
-    fn of_node(&self, node: usize) -> impl Iterator<Item = usize> {
-        let steps = self.corners.iter();
-        steps.filter_map(move |step| node.checked_sub(*step))
+    fn of_node(&self, node: usize) -> impl Iterator<Item = [usize; 2]> {
+        let steps = self.corners.iter().enumerate();
+        steps.filter_map(move |(corner, step)| {
+            let element = node.checked_sub(*step)?;
+            Some([element, CORNERS * element + corner])
+        })
     }
 
     fn parent(&self, element: usize) -> usize {
         self.parents[element] as usize
     }
 
-    fn couple(&mut self, slopes: &[AtNode], compliance: &[f32], blocks: &[Block]) {
-        for (element, row) in self.schur.iter_mut().enumerate() {
-            row.fill(0.0);
-            row[OWN] = compliance[element];
-            if compliance[element] == 0.0 {
-                continue;
-            }
-            for corner in 0..CORNERS {
-                let node = element + self.corners[corner];
-                let own = &slopes[CORNERS * element + corner];
-                let block = &blocks[node];
-                let moved: AtNode = std::array::from_fn(|row| {
-                    let entry = |col: usize| block[COMPONENTS * col + row];
-                    let turned = |col: usize| block[COMPONENTS * row + col];
-                    let each =
-                        (0..COMPONENTS).map(|col| 0.5 * (entry(col) + turned(col)) * own[col]);
-                    each.sum()
-                });
-                for of_other in 0..CORNERS {
-                    let Some(other) = node.checked_sub(self.corners[of_other]) else {
-                        continue;
-                    };
-                    // The node is one corner of both.
-                    let there = &slopes[CORNERS * other + of_other];
-                    let product: f32 = moved.iter().zip(there).map(|(a, b)| a * b).sum();
-                    row[neighbour_of(of_other, corner)] += product;
-                }
-            }
-        }
+    fn entries(&self) -> usize {
+        NEIGHBOURS * self.count
     }
 
-    fn diagonal(&self, element: usize) -> f32 {
-        self.schur[element][OWN]
+    fn entry(&self, row: [usize; 2], column: [usize; 2]) -> usize {
+        let [of_row, of_column] = [row[1], column[1]].map(|place| place % CORNERS);
+        NEIGHBOURS * row[0] + neighbour_of(of_column, of_row)
     }
 
     #[inline(always)]
-    fn product(&self, element: usize, x: &Field) -> f32 {
+    fn product(&self, element: usize, schur: &[f32], x: &Field) -> f32 {
         let [n_x, n_y, _] = self.counts;
         // The margin keeps all neighbours in the list.
         let first = x.margin + element - n_x * n_y - n_x - 1;
+        let schur = &schur[NEIGHBOURS * element..][..NEIGHBOURS];
         let mut sums = [0.0; ROWS];
         for (row, sum) in sums.iter_mut().enumerate() {
-            let entries = &self.schur[element][3 * row..3 * row + 3];
+            let entries = &schur[3 * row..3 * row + 3];
             let there = &x.values[first + n_x * (row % 3 + n_y * (row / 3))..][..3];
             *sum = entries[0] * there[0] + entries[1] * there[1] + entries[2] * there[2];
         }
         sums.iter().sum()
-    }
-
-    fn bytes(&self) -> usize {
-        let of_slopes = CORNERS * size_of::<AtNode>();
-        self.schur.len() * (of_slopes + size_of::<[f32; NEIGHBOURS + 9]>())
     }
 }

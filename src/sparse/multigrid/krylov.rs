@@ -49,14 +49,14 @@ pub(super) struct Iterated {
 }
 
 /// Sum of products, in a fixed order.
-fn dot(a: &[f64], b: &[f64]) -> f64 {
+pub(super) fn dot<T: Copy + Into<f64>>(a: &[T], b: &[T]) -> f64 {
     let mut sums = [0.0; 8];
     let (a_parts, b_parts) = (a.chunks_exact(8), b.chunks_exact(8));
     let rest = a_parts.remainder().iter().zip(b_parts.remainder());
-    let rest: f64 = rest.map(|(a, b)| a * b).sum();
+    let rest: f64 = rest.map(|(a, b)| (*a).into() * (*b).into()).sum();
     for (a, b) in a_parts.zip(b_parts) {
         for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += a * b;
+            *sum += (*a).into() * (*b).into();
         }
     }
     sums.iter().sum::<f64>() + rest

@@ -160,12 +160,18 @@ impl<T: Transfer> Level<T> {
     /// Calls `visit` with row, column and value of each entry of the matrix of displacements alone, in a fixed order.
     fn visit(&self, visit: &mut dyn FnMut(usize, usize, f64)) {
         let rows = &self.matrix.rows;
-        let blocks = self.matrix.blocks();
-        let mut matrix: Vec<NodeBlock> = blocks.map(|block| block.map(f64::from)).collect();
-        if let Some(pressures) = &self.pressures {
+        let with_volumes = self.pressures.as_ref().map(|pressures| {
+            let blocks = self.matrix.blocks();
+            let mut matrix: Vec<NodeBlock> = blocks.map(|block| block.map(f64::from)).collect();
             pressures.add_to(&mut matrix, |row, column| rows.find(row, column));
-        }
-        for (block, (node, other)) in matrix.iter().zip(rows.entries()) {
+            matrix
+        });
+        let blocks = self.matrix.blocks().zip(rows.entries());
+        for (number, (block, (node, other))) in blocks.enumerate() {
+            let block = match &with_volumes {
+                Some(matrix) => matrix[number],
+                None => block.map(f64::from),
+            };
             for (entry, value) in block.iter().enumerate() {
                 let (row, column) = (entry % COMPONENTS, entry / COMPONENTS);
                 visit(COMPONENTS * node + row, COMPONENTS * other + column, *value);
@@ -269,7 +275,7 @@ impl<T: Transfer> Hierarchy<T> {
     pub(super) fn bytes(&self) -> usize {
         let of_level = |level: &Level<T>| {
             let pressures = level.pressures.as_ref();
-            let of_pressures = pressures.map_or(0, |pressures| pressures.elements.bytes());
+            let of_pressures = pressures.map_or(0, Pressures::bytes);
             let of_transfer = level.transfer.as_ref().map_or(0, Transfer::blocks);
             let blocks = level.matrix.rows.blocks() + of_transfer + level.free.len();
             size_of::<Block>() * blocks + of_pressures

@@ -3,7 +3,6 @@
 //! Elements with a node in common are neighbours; an aggregate has one pressure, and the sums of volumes and compliances.
 
 use crate::sparse::multigrid::aggregation::{Aggregation, Points};
-use crate::sparse::multigrid::node_grid::{AtNode, Block, add, add_transposed};
 use crate::sparse::multigrid::pressures::{Elements, Field};
 use crate::sparse::multigrid::triangles::{BlockRows, NodeMesh};
 use std::ops::Range;
@@ -15,9 +14,8 @@ pub(super) struct MeshElements {
     pattern: BlockRows,
     /// Elements of each node, with places in B.
     of_nodes: Vec<Vec<[u32; 2]>>,
-    /// S.
+    /// Pattern of S.
     neighbours: BlockRows,
-    schur: Vec<f32>,
     /// Places of the aggregates or elements.
     points: Points,
     /// Element of the next coarser level that each is a part of; none of the coarsest level.
@@ -52,7 +50,6 @@ impl MeshElements {
             found
         }));
         Self {
-            schur: vec![0.0; neighbours.blocks()],
             parents: Vec::new(),
             pattern,
             of_nodes,
@@ -107,54 +104,30 @@ impl Elements for MeshElements {
         nodes.map(|node| *node as usize)
     }
 
-    fn of_node(&self, node: usize) -> impl Iterator<Item = usize> {
+    fn of_node(&self, node: usize) -> impl Iterator<Item = [usize; 2]> {
         let elements = self.of_nodes[node].iter();
-        elements.map(|[element, _]| *element as usize)
+        elements.map(|element| element.map(|number| number as usize))
     }
 
     fn parent(&self, element: usize) -> usize {
         self.parents[element] as usize
     }
 
-    fn couple(&mut self, slopes: &[AtNode], compliance: &[f32], blocks: &[Block]) {
-        self.schur.fill(0.0);
-        for (element, compliance) in compliance.iter().enumerate() {
-            if *compliance == 0.0 {
-                continue;
-            }
-            self.schur[self.neighbours.diagonal(element)] = *compliance;
-            for place in self.pattern.range(element) {
-                let node = self.pattern.column(place);
-                let (mut moved, mut turned) = (AtNode::default(), AtNode::default());
-                add(&mut moved, &blocks[node], &slopes[place]);
-                add_transposed(&mut turned, &blocks[node], &slopes[place]);
-                for [other, there] in &self.of_nodes[node] {
-                    let slopes = &slopes[*there as usize];
-                    let both = moved.iter().zip(&turned).map(|(a, b)| 0.5 * (a + b));
-                    let product: f32 = both.zip(slopes).map(|(a, b)| a * b).sum();
-                    let slot = self.neighbours.find(element, *other as usize);
-                    self.schur[slot.expect("both have the node")] += product;
-                }
-            }
-        }
+    fn entries(&self) -> usize {
+        self.neighbours.blocks()
     }
 
-    fn diagonal(&self, element: usize) -> f32 {
-        self.schur[self.neighbours.diagonal(element)]
+    fn entry(&self, row: [usize; 2], column: [usize; 2]) -> usize {
+        let entry = self.neighbours.find(row[0], column[0]);
+        entry.expect("both have the node")
     }
 
     #[inline(always)]
-    fn product(&self, element: usize, x: &Field) -> f32 {
-        let entries = self.schur[self.neighbours.range(element)].iter();
+    fn product(&self, element: usize, schur: &[f32], x: &Field) -> f32 {
+        let entries = schur[self.neighbours.range(element)].iter();
         let products = entries.zip(self.neighbours.columns(element));
         products
             .map(|(entry, column)| entry * x.values[*column as usize])
             .sum()
-    }
-
-    fn bytes(&self) -> usize {
-        let of_slopes = size_of::<AtNode>() + size_of::<[u32; 3]>();
-        let of_schur = size_of::<[u32; 2]>() * self.schur.len();
-        of_slopes * self.slopes() + of_schur + 40 * self.pattern.count()
     }
 }

@@ -12,6 +12,7 @@
 //! gradients with symmetric sweeps solve for q: pressures whose signs alternate from element to element hardly move anything, and sweeps
 //! alone leave them.
 
+use crate::sparse::multigrid::krylov::dot;
 use crate::sparse::multigrid::node_grid::{AtNode, Block, COMPONENTS, CORNERS, NodeBlock, add};
 use std::fmt::Debug;
 use std::ops::Range;
@@ -69,23 +70,20 @@ pub(super) trait Elements: Debug {
     /// Nodes of an element, in the order of its derivatives.
     fn nodes(&self, element: usize) -> impl Iterator<Item = usize>;
 
-    /// Elements of a node, in the order in which their volumes are taken out of its row.
-    fn of_node(&self, node: usize) -> impl Iterator<Item = usize>;
+    /// Elements of a node with the places of their derivatives by it, in the order in which their volumes are taken out of its row.
+    fn of_node(&self, node: usize) -> impl Iterator<Item = [usize; 2]>;
 
     /// Element of the next coarser level that one is a part of.
     fn parent(&self, element: usize) -> usize;
 
-    /// Makes S of B, C and the inverse of the diagonal blocks.
-    fn couple(&mut self, slopes: &[AtNode], compliance: &[f32], blocks: &[Block]);
+    /// Number of entries of S.
+    fn entries(&self) -> usize;
 
-    /// Entry of S on the diagonal.
-    fn diagonal(&self, element: usize) -> f32;
+    /// Entry of S of two elements, each with the place of its derivative by a node of both.
+    fn entry(&self, row: [usize; 2], column: [usize; 2]) -> usize;
 
-    /// Product of one row of S.
-    fn product(&self, element: usize, x: &Field) -> f32;
-
-    /// Bytes of its lists and of those of pressures.
-    fn bytes(&self) -> usize;
+    /// Product of the row of an element of S.
+    fn product(&self, element: usize, schur: &[f32], x: &Field) -> f32;
 }
 
 /// The pressures of a level.
@@ -96,6 +94,8 @@ pub(super) struct Pressures<E> {
     pub(super) slopes: Vec<AtNode>,
     /// C; zero where there is no element.
     pub(super) compliance: Vec<f32>,
+    /// S.
+    schur: Vec<f32>,
     /// Inverse of the diagonal of S; zero where there is no element.
     inverse: Vec<f32>,
     /// g.
@@ -110,17 +110,15 @@ pub(super) struct Pressures<E> {
     product: Field,
 }
 
-fn dot(a: &[f32], b: &[f32]) -> f64 {
-    let mut sums = [0.0; 8];
-    let (a, b) = (a.chunks_exact(8), b.chunks_exact(8));
-    let rest = a.remainder().iter().zip(b.remainder());
-    let rest: f64 = rest.map(|(a, b)| f64::from(*a) * f64::from(*b)).sum();
-    for (a, b) in a.zip(b) {
-        for (sum, (a, b)) in sums.iter_mut().zip(a.iter().zip(b)) {
-            *sum += f64::from(*a) * f64::from(*b);
-        }
-    }
-    sums.iter().sum::<f64>() + rest
+/// The symmetric part of a block times derivatives.
+fn times_symmetric_part(block: &Block, slopes: &AtNode) -> AtNode {
+    std::array::from_fn(|row| {
+        let pairs = (0..COMPONENTS).map(|col| {
+            let pair = [COMPONENTS * col + row, COMPONENTS * row + col].map(|entry| block[entry]);
+            0.5 * (pair[0] + pair[1]) * slopes[col]
+        });
+        pairs.sum()
+    })
 }
 
 impl<E: Elements> Pressures<E> {
@@ -130,6 +128,7 @@ impl<E: Elements> Pressures<E> {
         Self {
             slopes: vec![AtNode::default(); elements.slopes()],
             compliance: vec![0.0; count],
+            schur: vec![0.0; elements.entries()],
             inverse: vec![0.0; count],
             rhs: elements.field(),
             p: elements.field(),
@@ -140,6 +139,12 @@ impl<E: Elements> Pressures<E> {
             product: elements.field(),
             elements,
         }
+    }
+
+    /// Bytes of its numbers.
+    pub(super) fn bytes(&self) -> usize {
+        let of_element = size_of::<[f32; 9]>() * self.compliance.len();
+        size_of_val(&self.slopes[..]) + size_of_val(&self.schur[..]) + of_element
     }
 
     /// Takes the volume of an element with these nodes.
@@ -158,15 +163,33 @@ impl<E: Elements> Pressures<E> {
         }
     }
 
-    /// Makes S, with the inverse of its diagonal.
+    /// Makes S with the inverse of the diagonal blocks, and the inverse of its diagonal.
     pub(super) fn prepare(&mut self, blocks: &[Block]) {
-        self.elements.couple(&self.slopes, &self.compliance, blocks);
-        let lists = self.inverse.iter_mut().zip(&self.compliance);
-        for (element, (inverse, compliance)) in lists.enumerate() {
-            *inverse = match *compliance == 0.0 {
-                true => 0.0,
-                false => self.elements.diagonal(element).recip(),
-            };
+        let Self {
+            elements,
+            slopes,
+            compliance,
+            schur,
+            inverse,
+            ..
+        } = self;
+        schur.fill(0.0);
+        for (element, inverse) in inverse.iter_mut().enumerate() {
+            *inverse = 0.0;
+            if compliance[element] == 0.0 {
+                continue;
+            }
+            let first = elements.range(element).start;
+            let own = elements.entry([element, first], [element, first]);
+            schur[own] = compliance[element];
+            for (place, node) in (first..).zip(elements.nodes(element)) {
+                let moved = times_symmetric_part(&blocks[node], &slopes[place]);
+                for other in elements.of_node(node) {
+                    let products = moved.iter().zip(&slopes[other[1]]).map(|(a, b)| a * b);
+                    schur[elements.entry([element, place], other)] += products.sum::<f32>();
+                }
+            }
+            *inverse = schur[own].recip();
         }
     }
 
@@ -337,7 +360,7 @@ impl<E: Elements> Pressures<E> {
         let enough = RESIDUAL * RESIDUAL * square.abs();
         for _ in 0..LIMIT {
             for element in 0..self.compliance.len() {
-                let product = self.elements.product(element, &self.direction);
+                let product = self.elements.product(element, &self.schur, &self.direction);
                 self.product.inner_mut()[element] = product;
             }
             let (direction, product) = (self.direction.inner(), self.product.inner());
@@ -381,7 +404,8 @@ impl<E: Elements> Pressures<E> {
     /// Solves the equation of one element.
     #[inline(always)]
     fn relax(&mut self, element: usize) {
-        let left = self.residual.inner()[element] - self.elements.product(element, &self.swept);
+        let product = self.elements.product(element, &self.schur, &self.swept);
+        let left = self.residual.inner()[element] - product;
         self.swept.inner_mut()[element] += self.inverse[element] * left;
     }
 }

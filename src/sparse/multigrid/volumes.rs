@@ -142,7 +142,7 @@ impl Volumes {
             if number == range.start {
                 rest.clear();
                 rest.extend_from_slice(&blocks[range.clone()]);
-                for element in pressures.elements.of_node(node) {
+                for [element, _] in pressures.elements.of_node(node) {
                     if let Some(volume) = volumes.get(element) {
                         let corners = places.corners(element);
                         let place = |column| rows.find(node, column).map(|at| at - range.start);
