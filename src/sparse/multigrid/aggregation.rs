@@ -7,9 +7,10 @@
 //! A point of a coarse level has two nodes: the translation with the potential, and the rotation times a length, so that all numbers are of one
 //! size.
 
-use crate::sparse::multigrid::halves::{Marks, each_row, in_two};
 use crate::sparse::multigrid::node_grid::{Block, COMPONENTS, add_product, add_transposed_product};
-use crate::sparse::multigrid::triangles::{BlockMatrix, BlockRows, distance};
+use crate::sparse::multigrid::triangles::{
+    BlockMatrix, BlockRows, Marks, distance, each_row, in_two,
+};
 
 /// Transfer to a coarser level.
 #[derive(Debug)]

@@ -1,14 +1,13 @@
 //! Box grids of nodes, from the finest to the coarsest: trilinear transfer P, and Galerkin coarse matrices Pᵀ A P.
 
 use crate::sparse::multigrid::grid_pressures::GridElements;
-use crate::sparse::multigrid::halves::Marks;
 use crate::sparse::multigrid::level::{COARSEST, Hierarchy, Level, Transfer};
 use crate::sparse::multigrid::node_grid::{
     AtNode, Axis, Block, NodeGrid, coarsening, free_components, indices, near, node_at,
 };
 use crate::sparse::multigrid::pressures::Interpolation;
 use crate::sparse::multigrid::slab::Slab;
-use crate::sparse::multigrid::triangles::{BlockMatrix, BlockRows};
+use crate::sparse::multigrid::triangles::{BlockMatrix, BlockRows, Marks};
 use std::sync::Arc;
 
 /// Transfer to the next coarser grid.

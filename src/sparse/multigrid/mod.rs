@@ -9,7 +9,6 @@
 mod aggregation;
 mod grid;
 mod grid_pressures;
-mod halves;
 mod krylov;
 mod level;
 mod lobpcg;
