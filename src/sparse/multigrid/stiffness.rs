@@ -106,16 +106,20 @@ impl Parts {
     /// Largest entry on the diagonal of displacements, without scales.
     fn largest_diagonal(&self) -> f64 {
         let mut largest: f64 = 0.0;
-        for (part, scales) in self.scales.iter().enumerate() {
-            for node in self.nodes(part) {
-                let own = &self.matrix[self.places.diagonal(node)];
-                for component in 0..POTENTIAL {
-                    let entry = own[(COMPONENTS + 1) * component].abs();
-                    largest = largest.max(entry / scales[component].powi(2));
-                }
+        for (node, scales) in self.scales_by_node().enumerate() {
+            let own = &self.matrix[self.places.diagonal(node)];
+            for component in 0..POTENTIAL {
+                let entry = own[(COMPONENTS + 1) * component].abs();
+                largest = largest.max(entry / scales[component].powi(2));
             }
         }
         largest
+    }
+
+    /// Factors of rows and columns by component, node by node.
+    fn scales_by_node(&self) -> impl Iterator<Item = &[f64; COMPONENTS]> {
+        let parts = self.scales.iter().enumerate();
+        parts.flat_map(|(part, scales)| std::iter::repeat_n(scales, self.nodes(part).len()))
     }
 
     /// For each node, a bit for each component without a given value.
@@ -165,14 +169,12 @@ impl Stiffness<'_> {
         let mut added = std::mem::take(&mut self.by_potentials);
         self.multiply(&mut added);
         let mut squares = [0.0; COUNT];
-        for (part, scales) in self.parts.scales.iter().enumerate() {
-            let nodes = self.parts.nodes(part);
-            for (product, added) in product[nodes.clone()].iter_mut().zip(&added[nodes]) {
-                for v in 0..COUNT {
-                    for c in 0..POTENTIAL {
-                        product[v][c] += added[v][c];
-                        squares[v] += (added[v][c] * self.factor / scales[c]).powi(2);
-                    }
+        let lists = product.iter_mut().zip(&added);
+        for ((product, added), scales) in lists.zip(self.parts.scales_by_node()) {
+            for v in 0..COUNT {
+                for c in 0..POTENTIAL {
+                    product[v][c] += added[v][c];
+                    squares[v] += (added[v][c] * self.factor / scales[c]).powi(2);
                 }
             }
         }
@@ -193,19 +195,16 @@ impl SymmetricMatrix for Stiffness<'_> {
         if is_over() {
             return Err(Stopped);
         }
-        for (part, scales) in self.parts.scales.iter().enumerate() {
-            let nodes = self.parts.nodes(part);
-            for (to, from) in self.vectors[nodes.clone()].iter_mut().zip(&x[nodes]) {
-                *to = from.map(|vector| std::array::from_fn(|c| vector[c] / scales[c]));
-            }
+        let lists = self.vectors.iter_mut().zip(x);
+        for ((to, from), scales) in lists.zip(self.parts.scales_by_node()) {
+            *to = from.map(|vector| std::array::from_fn(|c| vector[c] / scales[c]));
         }
         self.multiply(product);
         let Some(errors) = self.follow(product, is_over)? else {
             return Ok(None);
         };
-        for (part, scales) in self.parts.scales.iter().enumerate() {
-            let nodes = self.parts.nodes(part);
-            for vector in product[nodes].as_flattened_mut() {
+        for (vectors, scales) in product.iter_mut().zip(self.parts.scales_by_node()) {
+            for vector in vectors {
                 for c in 0..POTENTIAL {
                     vector[c] *= self.factor / scales[c];
                 }
@@ -271,21 +270,17 @@ impl Stiffness<'_> {
             iterations,
         } = &mut self.workspace;
         rhs.fill(0.0);
-        for (part, scales) in self.parts.scales.iter().enumerate() {
-            for node in self.parts.nodes(part) {
-                for c in 0..POTENTIAL {
-                    rhs[COMPONENTS * node + c] = unit * r[node][v][c] * scales[c];
-                }
+        for (node, scales) in self.parts.scales_by_node().enumerate() {
+            for c in 0..POTENTIAL {
+                rhs[COMPONENTS * node + c] = unit * r[node][v][c] * scales[c];
             }
         }
         let iterated = krylov.solve(self.parts, rhs, found, OF_CORRECTION, is_over)?;
         **iterations += iterated.iterations;
-        for (part, scales) in self.parts.scales.iter().enumerate() {
-            for node in self.parts.nodes(part) {
-                let found = &found[COMPONENTS * node..];
-                x[node][v] = std::array::from_fn(|c| found[c] * scales[c]);
-                x[node][v][POTENTIAL] = 0.0;
-            }
+        for (node, scales) in self.parts.scales_by_node().enumerate() {
+            let found = &found[COMPONENTS * node..];
+            x[node][v] = std::array::from_fn(|c| found[c] * scales[c]);
+            x[node][v][POTENTIAL] = 0.0;
         }
         Ok(())
     }
