@@ -39,9 +39,9 @@ fn main() {
     let on_grid = model.node_grids().unwrap().boxes;
     let mesh = without_grid(&model);
     let size = system.size;
-    let solver = || Multigrid::new(size, &on_grid).unwrap();
+    let solver = || Multigrid::new(size, &on_grid, &[]).unwrap();
     let solution = solve("multigrid on the grid", solver, &system, &rhs);
-    let solver = || Multigrid::with_meshes(size, &[], &[mesh]).unwrap();
+    let solver = || Multigrid::new(size, &[], &[mesh]).unwrap();
     solve("multigrid by smoothed aggregation", solver, &system, &rhs);
     system.write(Path::new(folder), [&rhs, &solution]);
 }

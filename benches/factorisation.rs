@@ -106,7 +106,7 @@ fn iterate(n: usize, entries: &[(usize, usize)], values: &[f64]) {
             .collect(),
         has_pressures: false,
     };
-    let mut solver = Multigrid::new(size, &[grid]).expect("few nodes");
+    let mut solver = Multigrid::new(size, &[grid], &[]).expect("few nodes");
     let slots = entries.iter().map(|&(row, col)| solver.slot(row, col));
     let slots: Vec<usize> = slots
         .map(|slot| slot.expect("neighbours alone are coupled"))

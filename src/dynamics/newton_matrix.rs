@@ -202,7 +202,7 @@ impl GridTangent {
     ) -> Option<Self> {
         let grids = model.node_grids().ok()?;
         let (map, size) = (&model.action.map, model.variables.unknown_count());
-        let solver = Multigrid::with_meshes(size, &grids.boxes, &grids.meshes)?;
+        let solver = Multigrid::new(size, &grids.boxes, &grids.meshes)?;
         let sum = &model.action.intervals;
         let vectors = map.vectors.iter().map(|of| vector_place(&solver, of));
         let scalars = (0..sum.scalars).map(|s| scalar_place(&solver, model.variables.place(s)));

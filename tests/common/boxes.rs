@@ -63,7 +63,7 @@ pub(crate) fn entries(grid: &NodeGrid) -> Vec<((usize, usize), f64)> {
 
 /// A solver that has taken the matrix of these grids.
 pub(crate) fn solver(size: usize, grids: &[NodeGrid]) -> Multigrid {
-    let mut solver = Multigrid::new(size, grids).unwrap();
+    let mut solver = Multigrid::new(size, grids, &[]).unwrap();
     fill(&mut solver, grids);
     solver.take_values().unwrap();
     solver

@@ -31,7 +31,7 @@ fn expected(grids: &[NodeGrid], size: usize, taken: f64) -> Vec<f64> {
 }
 
 fn found(grids: &[NodeGrid], size: usize, taken: f64) -> LowestModes {
-    let mut solver = Multigrid::new(size, grids).unwrap();
+    let mut solver = Multigrid::new(size, grids, &[]).unwrap();
     solver.values_mut().fill(0.0);
     let nodes = grids.iter().flat_map(|grid| &grid.unknowns);
     let moving = nodes.flat_map(|node| node[..3].iter().flatten());

@@ -68,20 +68,12 @@ pub struct Multigrid {
 }
 
 impl Multigrid {
-    /// A solver for the unknowns of these grids, of `size` in all; those of no grid are held at zero. `None` where there are too many nodes to
-    /// count their entries.
+    /// A solver for the unknowns of these grids and meshes, of `size` in all; those of neither are held at zero. `None` where there are too many
+    /// nodes to count their entries.
     ///
     /// # Panics
     /// A grid has not one node for each of its places.
-    pub fn new(size: usize, grids: &[NodeGrid]) -> Option<Self> {
-        Self::with_meshes(size, grids, &[])
-    }
-
-    /// The same, with the unknowns of meshes too.
-    ///
-    /// # Panics
-    /// As of [`new`](Self::new).
-    pub fn with_meshes(size: usize, grids: &[NodeGrid], meshes: &[NodeMesh]) -> Option<Self> {
+    pub fn new(size: usize, grids: &[NodeGrid], meshes: &[NodeMesh]) -> Option<Self> {
         let (mut nodes, mut places) = (0, vec![NONE; size]);
         for grid in grids {
             let count: usize = grid.counts().iter().product();
