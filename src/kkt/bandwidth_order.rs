@@ -358,10 +358,7 @@ mod tests {
             (0..COUNT).flat_map(|i| near(i).map(move |j| (shuffled(i), COUNT + shuffled(j))));
         let (rows, cols): (Vec<u32>, Vec<u32>) = pairs.unzip();
         let progress = &mut Progress::new(&|| false);
-        let pattern = Pattern {
-            rows: &rows,
-            cols: &cols,
-        };
+        let pattern = Pattern::new(&rows, &cols);
         let graph = Graph::new(2 * COUNT as usize, pattern, progress);
         let graph = graph.expect("nothing stops it");
         let before = Group {

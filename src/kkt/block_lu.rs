@@ -136,6 +136,11 @@ fn column(values: &[f64], stride: usize, rows: Range<usize>, equation: usize) ->
     &values[rows.start + equation * stride..][..rows.len()]
 }
 
+/// Subtracts the product of two matrices.
+pub(super) fn subtract_product(from: MatMut<'_, f64>, a: MatRef<'_, f64>, b: MatRef<'_, f64>) {
+    matmul(from, Accum::Add, a, b, -1.0, Par::Seq);
+}
+
 /// Eliminates the equations of one panel.
 fn eliminate(
     panel: &Panel,
@@ -186,6 +191,6 @@ fn eliminate(
     let (mut right, rest) = others.split_at_row_mut(width);
     triangular::solve_unit_lower_triangular_in_place(square, right.as_mut(), Par::Seq);
     if below.nrows() > 0 {
-        matmul(rest, Accum::Add, below, right.as_ref(), -1.0, Par::Seq);
+        subtract_product(rest, below, right.as_ref());
     }
 }

@@ -2,13 +2,12 @@
 
 use std::ops::Range;
 
-use faer::linalg::matmul::matmul;
 use faer::linalg::triangular_solve as triangular;
-use faer::{Accum, MatMut, MatRef, Par};
+use faer::{MatMut, MatRef, Par};
 use pulp::Simd;
 
 use super::bandwidth_order::Panel;
-use super::block_lu::BlockLu;
+use super::block_lu::{BlockLu, subtract_product};
 use super::dense::{dot, subtract};
 
 /// Factors of a panel, and the rows of right-hand sides that they meet.
@@ -24,26 +23,11 @@ struct PanelRows<'a> {
 impl PanelRows<'_> {
     fn subtract_rest_from_own(&mut self) {
         let (rest, known) = (self.rest.transpose(), self.of_rest.as_ref());
-        matmul(
-            self.of_own.as_mut(),
-            Accum::Add,
-            rest,
-            known,
-            -1.0,
-            Par::Seq,
-        );
+        subtract_product(self.of_own.as_mut(), rest, known);
     }
 
     fn subtract_own_from_rest(&mut self) {
-        let known = self.of_own.as_ref();
-        matmul(
-            self.of_rest.as_mut(),
-            Accum::Add,
-            self.rest,
-            known,
-            -1.0,
-            Par::Seq,
-        );
+        subtract_product(self.of_rest.as_mut(), self.rest, self.of_own.as_ref());
     }
 }
 

@@ -298,10 +298,6 @@ impl Condensation {
         }
         let rows: Vec<u32> = pairs.iter().map(|pair| pair.0).collect();
         let cols: Vec<u32> = pairs.iter().map(|pair| pair.1).collect();
-        let all = Pattern {
-            rows: &rows,
-            cols: &cols,
-        };
         let twice = pairs.iter().enumerate();
         let twice = twice.filter(|(_, pair)| pair.0 == pair.1 && pair.2);
         self.twice = twice.map(|(at, _)| at as u32).collect();
@@ -310,7 +306,7 @@ impl Condensation {
             false => vec![plain],
         };
         for length in lengths {
-            let pattern = all.first(length);
+            let pattern = Pattern::new(&rows[..length], &cols[..length]);
             let (_, plan) = Fronts::new(kinds.len(), pattern, Some(kinds), progress)?;
             self.plans.push(plan);
         }
@@ -422,7 +418,7 @@ impl Plan {
             "a matrix of order {order}"
         );
         let progress = &mut Progress::new(is_over);
-        let pattern = Pattern { rows, cols };
+        let pattern = Pattern::new(rows, cols);
         let (graph, fronts) = Fronts::new(order, pattern, unknowns, progress)?;
         let multiplications = fronts.multiplications();
         let condensation = match unknowns {

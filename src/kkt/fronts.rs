@@ -81,10 +81,7 @@ impl Fronts {
 
     /// Rows and columns of the entries.
     pub(super) fn pattern(&self) -> Pattern<'_> {
-        Pattern {
-            rows: &self.rows,
-            cols: &self.cols,
-        }
+        Pattern::new(&self.rows, &self.cols)
     }
 
     /// Multiplications of a factorisation along the horizon without delays.

@@ -12,17 +12,13 @@ pub struct Pattern<'a> {
 }
 
 impl<'a> Pattern<'a> {
+    pub(super) const fn new(rows: &'a [u32], cols: &'a [u32]) -> Self {
+        Self { rows, cols }
+    }
+
     /// Number of entries.
     pub(super) const fn len(self) -> usize {
         self.rows.len()
-    }
-
-    /// The first entries.
-    pub(super) fn first(self, count: usize) -> Self {
-        Self {
-            rows: &self.rows[..count],
-            cols: &self.cols[..count],
-        }
     }
 
     /// Row and column of each entry.

@@ -575,10 +575,7 @@ mod tests {
                 let b = DVector::from_column_slice(right);
                 assert!(b[0] == 1.0 && b[1] == -1.0);
                 right.copy_from_slice(x.as_slice());
-                let pattern = Pattern {
-                    rows: &rows,
-                    cols: &cols,
-                };
+                let pattern = Pattern::new(&rows, &cols);
                 let found = trial.backward_error(pattern, &entries);
                 let terms = &magnitudes * x.abs() + b.abs();
                 let expected = (&b - &a * &x).abs().component_div(&terms).max();
@@ -592,10 +589,7 @@ mod tests {
     fn what_is_no_number_is_no_solution() {
         let mut trial = Trial::new(2);
         trial.begin()[1] = f64::NAN;
-        let pattern = Pattern {
-            rows: &[0, 1],
-            cols: &[0, 1],
-        };
+        let pattern = Pattern::new(&[0, 1], &[0, 1]);
         let error = trial.backward_error(pattern, &[1.0, 1.0]);
         assert_eq!(error, f64::INFINITY);
     }

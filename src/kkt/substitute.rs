@@ -201,12 +201,14 @@ fn value(values: &[f64], item: &Item) -> f64 {
     values[item.value as usize]
 }
 
+#[inline(always)]
 fn gather(x: &[f64], unknowns: &[u32], to: &mut [f64]) {
     for (value, &i) in to.iter_mut().zip(unknowns) {
         *value = x[i as usize];
     }
 }
 
+#[inline(always)]
 fn scatter(from: &[f64], unknowns: &[u32], x: &mut [f64]) {
     for (value, &i) in from.iter().zip(unknowns) {
         x[i as usize] = *value;
@@ -247,7 +249,7 @@ impl WithSimd for Solve<'_> {
 fn forward<S: Simd>(unit: S, factors: &Factors, block: &Block, x: &mut [f64], work: &mut [f64]) {
     let unknowns = &factors.unknowns[block.unknowns..][..block.order];
     let work = &mut work[..block.order];
-    gather_block(x, unknowns, work);
+    gather(x, unknowns, work);
     let mut columns = &factors.columns[block.columns..];
     for j in 0..block.eliminated {
         let (pivot, below) = work[j..].split_first_mut().expect("a row for each column");
@@ -255,9 +257,7 @@ fn forward<S: Simd>(unit: S, factors: &Factors, block: &Block, x: &mut [f64], wo
         subtract(unit, below, column, *pivot);
         columns = rest;
     }
-    for (&i, value) in unknowns.iter().zip(&*work) {
-        x[i as usize] = *value;
-    }
+    scatter(work, unknowns, x);
 }
 
 /// `D Lᵀ x = y` on the rows of one block.
@@ -265,7 +265,7 @@ fn forward<S: Simd>(unit: S, factors: &Factors, block: &Block, x: &mut [f64], wo
 fn backward<S: Simd>(unit: S, factors: &Factors, block: &Block, x: &mut [f64], work: &mut [f64]) {
     let unknowns = &factors.unknowns[block.unknowns..][..block.order];
     let work = &mut work[..block.order];
-    gather_block(x, unknowns, work);
+    gather(x, unknowns, work);
     let count = block.eliminated;
     divide(&factors.pivots[block.pivots..][..count], &mut work[..count]);
     let length = |j: usize| block.order - j - 1;
@@ -277,16 +277,7 @@ fn backward<S: Simd>(unit: S, factors: &Factors, block: &Block, x: &mut [f64], w
         *pivot -= dot(unit, column, below);
         columns = rest;
     }
-    for (&i, value) in unknowns[..count].iter().zip(&*work) {
-        x[i as usize] = *value;
-    }
-}
-
-#[inline(always)]
-fn gather_block(x: &[f64], unknowns: &[u32], work: &mut [f64]) {
-    for (value, &i) in work.iter_mut().zip(unknowns) {
-        *value = x[i as usize];
-    }
+    scatter(work, &unknowns[..count], x);
 }
 
 /// `x ← D⁻¹ x`.
