@@ -82,70 +82,49 @@ impl Signal {
 
     /// The value at a time.
     pub fn at(&self, time: f64) -> f64 {
-        match self {
-            Self::Constant(value) => *value,
+        self.derivatives(time)[0]
+    }
+
+    /// Value, rate per ms and second derivative at a time; at a corner those of the time after it.
+    pub fn derivatives(&self, time: f64) -> [f64; 3] {
+        let [value, rate] = match self {
+            Self::Constant(value) => [*value, 0.0],
             Self::Ramp {
                 from,
                 to,
                 start,
                 duration,
             } => match time - start {
-                late if late >= *duration => *to,
-                early if early <= 0.0 => *from,
-                part => from + (to - from) * part / duration,
+                late if late >= *duration => [*to, 0.0],
+                early if early < 0.0 => [*from, 0.0],
+                part => [from + (to - from) * part / duration, (to - from) / duration],
             },
             Self::Sine {
                 mean,
                 amplitude,
                 frequency,
                 phase,
-            } => mean + amplitude * (TAU * frequency * time + phase).sin(),
-            Self::Table { times, values } => {
-                let next = times.partition_point(|&t| t <= time);
-                match (next.checked_sub(1), times.get(next)) {
-                    (None, _) => values[0],
-                    (Some(last), None) => values[last],
-                    (Some(before), Some(&end)) => {
-                        let part = (time - times[before]) / (end - times[before]);
-                        values[before] + (values[next] - values[before]) * part
-                    }
-                }
-            }
-        }
-    }
-
-    /// Value, rate per ms and second derivative at a time; at a corner those of the time after it.
-    pub fn derivatives(&self, time: f64) -> [f64; 3] {
-        let value = self.at(time);
-        let rate = match self {
-            Self::Constant(_) => 0.0,
-            Self::Ramp {
-                from,
-                to,
-                start,
-                duration,
-            } => match time - start {
-                part if part >= 0.0 && part < *duration => (to - from) / duration,
-                _ => 0.0,
-            },
-            Self::Sine {
-                amplitude,
-                frequency,
-                phase,
-                ..
             } => {
                 let turns = TAU * frequency;
                 let angle = turns * time + phase;
-                let rate = amplitude * turns * angle.cos();
-                return [value, rate, -amplitude * turns * turns * angle.sin()];
+                let (sin, cos) = (angle.sin(), angle.cos());
+                let rate = amplitude * turns * cos;
+                return [
+                    mean + amplitude * sin,
+                    rate,
+                    -amplitude * turns * turns * sin,
+                ];
             }
             Self::Table { times, values } => {
                 let next = times.partition_point(|&t| t <= time);
                 match (next.checked_sub(1), times.get(next)) {
+                    (None, _) => [values[0], 0.0],
+                    (Some(last), None) => [values[last], 0.0],
                     (Some(before), Some(&end)) => {
-                        (values[next] - values[before]) / (end - times[before])
+                        let (change, length) = (values[next] - values[before], end - times[before]);
+                        let part = (time - times[before]) / length;
+                        [values[before] + change * part, change / length]
                     }
-                    _ => 0.0,
                 }
             }
         };
