@@ -133,14 +133,9 @@ pub(super) fn typical_energy(model: &Model) -> f64 {
         muscle.material.shear_modulus * width * depth * muscle.length()
     });
     let solids = model.system.solids.iter().map(|solid| {
-        let volume = (0..3).map(|axis| {
-            let along = solid.mesh.nodes.iter().map(|node| node[axis]);
-            let ends = (f64::INFINITY, f64::NEG_INFINITY);
-            let (low, high) = along.fold(ends, |(low, high), x| (low.min(x), high.max(x)));
-            high - low
-        });
+        let (low, high) = solid.mesh.bounds();
         let moduli = solid.materials.iter().map(|m| m.shear_modulus);
-        volume.product::<f64>() * moduli.fold(0.0, f64::max)
+        (high - low).product() * moduli.fold(0.0, f64::max)
     });
     let components = model.system.components.iter();
     let components = components.map(|component| component.typical_energy());

@@ -15,10 +15,7 @@ impl Mesh {
 
     /// Lower and upper corner in mm of the box around all nodes; `(+∞, −∞)` for no nodes.
     pub fn bounds(&self) -> (Vector3<f64>, Vector3<f64>) {
-        let (lower, upper) = (f64::INFINITY, f64::NEG_INFINITY);
-        let start = (Vector3::repeat(lower), Vector3::repeat(upper));
-        let nodes = self.nodes.iter();
-        nodes.fold(start, |(lower, upper), x| (lower.inf(x), upper.sup(x)))
+        bounds(&self.nodes)
     }
 
     /// Diagonal in mm of the box around all nodes; zero for no nodes.
@@ -66,6 +63,14 @@ impl Mesh {
             .map(|(node, _)| node)
             .collect()
     }
+}
+
+/// Lower and upper corner of the box around points; `(+∞, −∞)` for none.
+pub(super) fn bounds(points: &[Vector3<f64>]) -> (Vector3<f64>, Vector3<f64>) {
+    let (lower, upper) = (f64::INFINITY, f64::NEG_INFINITY);
+    let start = (Vector3::repeat(lower), Vector3::repeat(upper));
+    let points = points.iter();
+    points.fold(start, |(lower, upper), x| (lower.inf(x), upper.sup(x)))
 }
 
 /// Corners of the six faces of a hexahedron, counter-clockwise seen from outside: lower, upper, then the sides.

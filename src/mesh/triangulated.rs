@@ -1,5 +1,6 @@
 //! Triangulated surfaces: outlines of bodies, from files or of simple shapes.
 
+use crate::mesh::geometry::bounds;
 use crate::mesh::{CORNERS, Mesh};
 use nalgebra::Vector3;
 use rustc_hash::FxHashMap;
@@ -60,10 +61,7 @@ impl Surface {
 
     /// Lower and upper corner in mm of the box around all vertices; `(+∞, −∞)` for none.
     pub fn bounds(&self) -> (Vector3<f64>, Vector3<f64>) {
-        let (lower, upper) = (f64::INFINITY, f64::NEG_INFINITY);
-        let start = (Vector3::repeat(lower), Vector3::repeat(upper));
-        let vertices = self.vertices.iter();
-        vertices.fold(start, |(lower, upper), x| (lower.inf(x), upper.sup(x)))
+        bounds(&self.vertices)
     }
 
     /// Adds another surface.
