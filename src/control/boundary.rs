@@ -167,12 +167,11 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
             rest,
             ..
         } => {
-            let goal = (When::Goal, "goal");
-            goal_rows::add_places(&mut limits, system, places, goal);
+            goal_rows::add_places(&mut limits, system, places, When::Goal, "goal");
             if *rest == Rest::Bodies {
                 goal_rows::add_rest(&mut limits, system, places.keys());
             }
-            goal_rows::add_orientations(&mut limits, system, orientations, goal);
+            goal_rows::add_orientations(&mut limits, system, orientations, When::Goal, "goal");
         }
         goal @ BoundaryState::JointAngles { angles, .. }
             if redundant && !all_joints_given(system, goal) =>
@@ -186,12 +185,12 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
         _ => {}
     }
     for waypoint in &control.waypoints {
-        let at = (When::At(waypoint.part), waypoint.name.as_str());
-        goal_rows::add_places(&mut limits, system, &waypoint.places, at);
-        goal_rows::add_orientations(&mut limits, system, &waypoint.orientations, at);
+        let (when, at) = (When::At(waypoint.part), waypoint.name.as_str());
+        goal_rows::add_places(&mut limits, system, &waypoint.places, when, at);
+        goal_rows::add_orientations(&mut limits, system, &waypoint.orientations, when, at);
         for (&joint, &near) in &waypoint.angles {
-            let name = format!("{} coordinate of {}", at.1, system.joints[joint].name);
-            limits.add_equality(at.0, Quantity::joint(joint, near), near, name);
+            let name = format!("{at} coordinate of {}", system.joints[joint].name);
+            limits.add_equality(when, Quantity::joint(joint, near), near, name);
         }
     }
     free_parameters::in_intervals(&mut limits, control);

@@ -138,7 +138,7 @@ pub struct Waypoint {
 impl Waypoint {
     /// The squared distances from its places and coordinates at its instant, as costs with a weight.
     pub fn costs(&self, weight: f64) -> Vec<QuantityCost> {
-        let cost = |(quantity, value): (Quantity, f64)| QuantityCost {
+        let cost = |quantity: Quantity, value: f64| QuantityCost {
             quantity,
             weight,
             function: CostFunction::Square {
@@ -152,7 +152,8 @@ impl Waypoint {
         });
         let angles = self.angles.iter();
         let angles = angles.map(|(&joint, &value)| (Quantity::joint(joint, 0.0), value));
-        places.chain(angles).map(cost).collect()
+        let all = places.chain(angles);
+        all.map(|(quantity, value)| cost(quantity, value)).collect()
     }
 }
 

@@ -22,7 +22,8 @@ pub(super) fn add_places(
     limits: &mut Limits,
     system: &System,
     places: &BTreeMap<usize, Place>,
-    (when, at): (When, &str),
+    when: When,
+    at: &str,
 ) {
     for (&marker, place) in places {
         let name = &system.markers[marker].name;
@@ -56,7 +57,8 @@ pub(super) fn add_orientations(
     limits: &mut Limits,
     system: &System,
     orientations: &BTreeMap<usize, Orientation>,
-    (when, at): (When, &str),
+    when: When,
+    at: &str,
 ) {
     for (&body, orientation) in orientations {
         let name = format!("{at} orientation of body {}", system.bodies[body].name);

@@ -296,9 +296,8 @@ pub(super) fn on_uniform_grid<'s>(
     let intervals = solved.intervals();
     let end = solved.times[intervals];
     let time = |k: f64| end * k / intervals as f64;
-    let is_even =
-        |(k, &t): (usize, &f64)| (t - time(k as f64)).abs() <= ROUNDING * end / intervals as f64;
-    if solved.times.iter().enumerate().all(is_even) {
+    let mut times = (0..).zip(&solved.times);
+    if times.all(|(k, t)| (t - time(f64::from(k))).abs() <= ROUNDING * end / intervals as f64) {
         return Cow::Borrowed(solved);
     }
     let step_at = |time: f64| {

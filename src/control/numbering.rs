@@ -139,7 +139,8 @@ impl Numbering {
     /// values are given, `is_balanced(k, i)` whether the momentum balance of coordinate i of instant k is an equation.
     pub(in crate::control) fn new(
         variables: &Variables,
-        (intervals, twin): (usize, Option<Twin>),
+        intervals: usize,
+        twin: Option<Twin>,
         is_given: impl Fn(Column) -> bool,
         is_balanced: impl Fn(usize, usize) -> bool,
     ) -> Self {
@@ -243,6 +244,25 @@ impl Numbering {
     /// Column of the interval length.
     pub fn horizon(&self) -> Option<usize> {
         self.column_of_horizon
+    }
+
+    /// Number of a column, unless its value is given.
+    pub(in crate::control) fn number(&self, column: Column) -> Option<usize> {
+        match column {
+            Column::Instant { k, i } => self.unknown(k, i),
+            Column::Interval { k, s } => self.scalar(k, s),
+            Column::Parameter { s } => self.scalar(0, s),
+            Column::Horizon => self.column_of_horizon,
+        }
+    }
+
+    /// Row of the equation of a variable of an instant or interval.
+    pub(in crate::control) fn row_of(&self, variable: Column) -> Option<usize> {
+        match variable {
+            Column::Instant { k, i } => self.row(k, i),
+            Column::Interval { k, s } => self.row_of_scalar(k, s),
+            Column::Parameter { .. } | Column::Horizon => None,
+        }
     }
 
     /// Row of variable i of instant k.

@@ -83,7 +83,7 @@ pub fn limits_along(
         }
         let along = (0..=motion.intervals()).filter_map(|k| {
             let value = match before {
-                None => along(&model, (place, bounded), motion, k)?,
+                None => along(&model, place, bounded, motion, k)?,
                 Some(before) => step(&model, [before, place], &bounded.quantity, motion, k)?,
             };
             let beyond = bounded.beyond(value);
@@ -119,7 +119,8 @@ pub fn limits_along(
 /// A value of a bounded quantity at instant k of a motion, or in the interval before it.
 fn along(
     model: &Model,
-    (place, bounded): (usize, &BoundedQuantity),
+    place: usize,
+    bounded: &BoundedQuantity,
     motion: &DiscreteTrajectory,
     k: usize,
 ) -> Option<f64> {
@@ -129,7 +130,7 @@ fn along(
         let own = model.joint_readings[*joint].coordinate?;
         return Some(motion.z[k][own]);
     }
-    value(model, (place, &bounded.quantity), motion, k).map(|(value, _)| value)
+    value(model, place, &bounded.quantity, motion, k).map(|(value, _)| value)
 }
 
 /// The step from the interval before instant k of a motion to the one after it, by what is measured in both, in its unit.
@@ -143,7 +144,7 @@ fn step(
     if k == 0 || k == motion.intervals() {
         return None;
     }
-    let at = |place: usize, k: usize| Some(value(model, (place, quantity), motion, k)?.0);
+    let at = |place: usize, k: usize| Some(value(model, place, quantity, motion, k)?.0);
     Some((at(here, k + 1)? - at(before, k)?) / quantity.step_unit())
 }
 
@@ -162,13 +163,15 @@ impl LimitsAlong {
 /// Value and plain unit of the quantity of cost number `index` at instant `k` of a motion, or in the interval before it; none where the model
 /// does not measure it.
 pub fn measured_value(
-    (model, boundary): (&Model, &BoundaryConditions),
-    (index, quantity): (usize, &Quantity),
+    model: &Model,
+    boundary: &BoundaryConditions,
+    index: usize,
+    quantity: &Quantity,
     motion: &DiscreteTrajectory,
     k: usize,
 ) -> Option<(f64, &'static str)> {
     let place = boundary.limits.quantities().len() + index;
-    let (value, h) = value(model, (place, quantity), motion, k)?;
+    let (value, h) = value(model, place, quantity, motion, k)?;
     let quantity = quantity.clone().with_interval(h);
     Some(quantity.plain(value, &model.system))
 }
@@ -176,7 +179,8 @@ pub fn measured_value(
 /// The value of measured quantity number `place`, and the length in ms of the interval; 1 of what is measured at instants.
 pub(super) fn value(
     model: &Model,
-    (place, quantity): (usize, &Quantity),
+    place: usize,
+    quantity: &Quantity,
     motion: &DiscreteTrajectory,
     k: usize,
 ) -> Option<(f64, f64)> {

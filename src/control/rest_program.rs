@@ -52,7 +52,8 @@ pub struct RestProgram<'m> {
 /// It is time to stop.
 pub fn rest_programs<'m>(
     motion: &Transcription<'_>,
-    (model, boundary): (&'m Model, &BoundaryConditions),
+    model: &'m Model,
+    boundary: &BoundaryConditions,
     control: &Control,
 ) -> Result<Vec<RestProgram<'m>>, BoundaryError> {
     let at_start = Some((0, "start", &boundary.start.z[..]));

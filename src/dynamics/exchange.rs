@@ -101,15 +101,10 @@ impl EnergyExchange {
                     out.is_complete = false;
                     let circuit = system.electrode_circuit(source);
                     let charged = circuit.zip(motion.charges.get(&source));
-                    let through = |(circuit, charges): (Circuit, &Vec<f64>)| {
-                        SourceEnergies::of_electrodes(
-                            (source, named.name),
-                            &circuit,
-                            charges,
-                            motion,
-                        )
-                    };
-                    out.sources.extend(charged.map(through));
+                    out.sources.extend(charged.map(|(circuit, charges)| {
+                        let name = named.name.replace('.', "_");
+                        SourceEnergies::of_electrodes(source, name, &circuit, charges, motion)
+                    }));
                 }
             }
         }
@@ -166,7 +161,8 @@ impl EnergyExchange {
 impl SourceEnergies {
     /// Of electrodes of finite elements behind a resistor with these charges, without the work within the elements.
     fn of_electrodes(
-        (source, name): (usize, String),
+        source: usize,
+        name: String,
         circuit: &Circuit,
         charges: &Vec<f64>,
         motion: &Trajectory,
@@ -176,7 +172,7 @@ impl SourceEnergies {
         let [electrical_energy, _] = through_resistor(&still, charges, voltages);
         let mut energies = Self {
             source,
-            name: name.replace('.', "_"),
+            name,
             electrical_energy,
             mechanical_work: Vec::new(),
             heats: Vec::new(),

@@ -160,7 +160,7 @@ impl Problem {
         for _ in 0..CORRECTIONS {
             let left = &wanted - gradients.tr_mul(&found);
             let pull = &mass * (&self.carried - &found);
-            let step = constrained((&mass, &gradients), [pull.as_slice(), left.as_slice()]);
+            let step = constrained(&mass, &gradients, [pull.as_slice(), left.as_slice()]);
             found += DVector::from_vec(step);
         }
         Some(found)

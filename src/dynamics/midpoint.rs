@@ -12,7 +12,7 @@ use crate::coordinates::{Configuration as Place, Interval, Scratch};
 use crate::dynamics::newton_matrix::NewtonMatrix;
 use crate::dynamics::resolution::{Balance, typical_energy};
 use crate::dynamics::solving::{Drive, Newton, Solving};
-use crate::dynamics::stepper::{Equations, Steps};
+use crate::dynamics::stepper::{Equations, Now, Steps};
 use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::functional::{BlockMask, NodeBlocks, Order};
 use crate::math::Vector;
@@ -340,26 +340,16 @@ impl Equations for Midpoint<'_> {
         self.model.variables.unknown(unknown).to_string()
     }
 
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn coordinates(&self) -> &[f64] {
-        &self.here.z
-    }
-
-    fn momentum(&self) -> &[f64] {
-        &self.momentum
-    }
-
-    fn scalars(&self) -> &[f64] {
-        &self.scalars
-    }
-
-    fn multipliers(&self) -> &[f64] {
-        // Those of the step stay in the list of both of its ends.
+    fn now(&self) -> Now<'_> {
         let map = &self.model.action.map;
-        &self.here.z[map.coordinates..map.unknowns()]
+        Now {
+            time: self.time,
+            z: &self.here.z,
+            momentum: &self.momentum,
+            scalars: &self.scalars,
+            // Those of the step stay in the list of both of its ends.
+            multipliers: &self.here.z[map.coordinates..map.unknowns()],
+        }
     }
 }
 

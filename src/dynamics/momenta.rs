@@ -487,7 +487,7 @@ impl<'m> Kinetic<'m> {
         }
         let mut values = right[n..].to_vec();
         values.resize(gradients.ncols(), 0.0);
-        Some(constrained((&mass, &gradients), [&right[..n], &values]))
+        Some(constrained(&mass, &gradients, [&right[..n], &values]))
     }
 
     /// Masses, and the gradients of the constraints as columns, of all `n` coordinates.
@@ -542,7 +542,8 @@ impl<'m> Kinetic<'m> {
 
 /// The v of least ½ vᵀM v − pᵀv with Gᵀv = g, or the least squares of it where constraints contradict each other; G has columns.
 pub(super) fn constrained(
-    (mass, gradients): (&DMatrix<f64>, &DMatrix<f64>),
+    mass: &DMatrix<f64>,
+    gradients: &DMatrix<f64>,
     [momentum, values]: [&[f64]; 2],
 ) -> Vec<f64> {
     let n = mass.nrows();

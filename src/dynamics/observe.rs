@@ -258,7 +258,7 @@ impl<'m> Observer<'m> {
             let next = discrete.times.get(k + 1).unwrap_or(&discrete.times[k]);
             0.5 * (next - discrete.times[interval])
         });
-        let charging = self.parts.charging(model, &self.here, (&sides, time));
+        let charging = self.parts.charging(model, &self.here, &sides, time);
         std::mem::swap(&mut self.before, &mut self.here);
         Row {
             values: row,
@@ -290,7 +290,7 @@ impl<'m> Observer<'m> {
             kinetic: energies.kinetic,
             potential: energies.potential,
             momenta,
-            parts: self.parts.of_interval(model, ends, (scalars, h)),
+            parts: self.parts.of_interval(model, ends, scalars, h),
         };
         (state, before, energies.work)
     }

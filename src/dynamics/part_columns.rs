@@ -107,7 +107,8 @@ impl PartColumns {
         &self,
         model: &Model,
         [a, b]: [&Configuration; 2],
-        (scalars, h): (&[f64], f64),
+        scalars: &[f64],
+        h: f64,
     ) -> Vec<f64> {
         let mut middle = b.clone();
         let ends = a.z.iter().zip(&b.z);
@@ -132,7 +133,8 @@ impl PartColumns {
         &self,
         model: &Model,
         here: &Configuration,
-        (sides, time): (&[Side], f64),
+        sides: &[Side],
+        time: f64,
     ) -> Vec<f64> {
         let mut added = vec![0.0; self.joints.len() + self.markers.len()];
         for reading in &self.muscles {
@@ -268,12 +270,13 @@ fn columns(model: &Model, sections: &[JointSection]) -> Vec<Column> {
         let name = &model.system.joints[section.joint].name;
         let torque = section.has_torque.then_some(("torque", "N mm"));
         let quantities = [("force", "N")].into_iter().chain(torque);
-        let column = |(quantity, unit): (&str, &'static str), axis: &str| Column {
+        let column = |quantity: &str, unit: &'static str, axis: &str| Column {
             name: format!("{name}_{quantity}_{axis}"),
             unit,
             values: Vec::new(),
         };
-        let all = quantities.flat_map(|of| ["x", "y", "z"].map(|axis| column(of, axis)));
+        let all =
+            quantities.flat_map(|(of, unit)| ["x", "y", "z"].map(|axis| column(of, unit, axis)));
         all.collect::<Vec<_>>()
     };
     sections.iter().flat_map(of_section).collect()

@@ -406,7 +406,7 @@ impl<E: Equations> Steps<E> {
         Ok(Controlled {
             taken: part,
             next,
-            multipliers: self.equations.multipliers().to_vec(),
+            multipliers: self.equations.now().multipliers.to_vec(),
         })
     }
 }

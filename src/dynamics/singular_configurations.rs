@@ -55,11 +55,11 @@ pub(super) fn reversed(
 
 /// The shortest lumped muscle of a placed instant, if it is rather short: its index and its stretch.
 pub(super) fn shortest(model: &Model, at: &Configuration) -> Option<(usize, f64)> {
-    let stretch = |(m, span): (usize, usize)| {
+    let all = lumped(model).map(|(m, span)| {
         let length = model.system.muscles[m].length();
         (m, at.x[span].norm() / length)
-    };
-    let short = lumped(model).map(stretch).filter(|(_, s)| *s < SHORT);
+    });
+    let short = all.filter(|(_, s)| *s < SHORT);
     short.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 

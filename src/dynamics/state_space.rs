@@ -146,7 +146,7 @@ impl<'m> Linearisation<'m> {
     /// The step of `h` ms from coordinates to the next under these scalars; `None` where it is singular.
     pub fn step(&mut self, z: [&[f64]; 2], scalars: &[f64], h: f64) -> Option<LinearStep> {
         let blocks = self.blocks(z, scalars, h);
-        let by_inputs = self.by_inputs(z, (scalars, &blocks), h);
+        let by_inputs = self.by_inputs(z, scalars, &blocks, h);
         let (n, m, u) = (self.free.len(), self.inert.len(), self.inputs.len());
         let own: Vec<usize> = self.model.variables.algebraic().collect();
         let (size, columns) = (n + own.len(), n + m + u);
@@ -209,7 +209,8 @@ impl<'m> Linearisation<'m> {
     fn by_inputs(
         &mut self,
         z: [&[f64]; 2],
-        (scalars, blocks): (&[f64], &Blocks),
+        scalars: &[f64],
+        blocks: &Blocks,
         h: f64,
     ) -> [DMatrix<f64>; 3] {
         let inputs = self.inputs.clone();

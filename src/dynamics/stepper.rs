@@ -84,22 +84,22 @@ impl<E: Equations> Steps<E> {
 
     /// Time in ms.
     pub fn time(&self) -> f64 {
-        self.equations.time()
+        self.equations.now().time
     }
 
     /// Coordinates now, and the multipliers of the step that led away from the instant before.
     pub fn coordinates(&self) -> &[f64] {
-        self.equations.coordinates()
+        self.equations.now().z
     }
 
     /// Voltages and potentials of the last interval.
     pub fn scalars(&self) -> &[f64] {
-        self.equations.scalars()
+        self.equations.now().scalars
     }
 
     /// Momentum of each coordinate.
     pub fn momentum(&self) -> &[f64] {
-        self.equations.momentum()
+        self.equations.now().momentum
     }
 
     /// Work in mJ that forces without a potential did over the last step, where its ends alone do not determine it.
@@ -145,7 +145,7 @@ impl<E: Equations> Steps<E> {
             match self.attempt(part) {
                 Ok(()) => {
                     done += part;
-                    multipliers.get_or_insert_with(|| self.equations.multipliers().to_vec());
+                    multipliers.get_or_insert_with(|| self.equations.now().multipliers.to_vec());
                 }
                 Err(stopped @ StepError::Stopped { .. }) => return Err(stopped),
                 // Retry with a fresh tangent.
@@ -234,14 +234,14 @@ impl<E: Equations> Steps<E> {
         let first = residuals.first().copied().unwrap_or(f64::NAN);
         let last = &residuals[residuals.len().saturating_sub(4)..];
         Err(StepError::NoConvergence {
-            time: self.equations.time(),
+            time: self.equations.now().time,
             step: h,
             residuals: last.iter().map(|r| r / first).collect(),
             limit: limit.map(Box::new),
             muscle: self.short_muscle(),
             overflow: singular_configurations::overflow(
                 self.equations.model(),
-                self.equations.scalars(),
+                self.equations.now().scalars,
             ),
         })
     }
@@ -274,7 +274,7 @@ impl<E: Equations> Steps<E> {
 
     fn stopped(&mut self, step: f64, Stopped(status): Stopped) -> StepError {
         self.equations.restore();
-        let time = self.equations.time();
+        let time = self.equations.now().time;
         StepError::Stopped { time, step, status }
     }
 
@@ -300,7 +300,7 @@ impl<E: Equations> Steps<E> {
     /// Returns the reason why a solution is not accepted: a muscle passed through zero length or the limit of its law, a joint turned too
     /// far, an element is crushed, the energy balance does not close.
     fn refusal(&mut self, step: f64) -> Option<StepError> {
-        let time = self.equations.time();
+        let time = self.equations.now().time;
         let model = self.equations.model();
         let [start, end] = self.equations.ends();
         if let Some(muscle) = singular_configurations::reversed(model, start, end) {
@@ -323,7 +323,7 @@ impl<E: Equations> Steps<E> {
             Some(balance) => balance.refusal(self.equations.model(), time, step),
             None => {
                 let [_, end] = self.equations.ends();
-                let scalars = self.equations.scalars();
+                let scalars = self.equations.now().scalars;
                 singular_configurations::is_inverted(self.equations.model(), end, scalars)
                     .then_some(StepError::Inverted { time, step })
             }
@@ -386,7 +386,7 @@ impl<E: Equations> Steps<E> {
             self.equations.restore();
             let [start, _] = self.equations.ends();
             StepError::Singular {
-                time: self.equations.time(),
+                time: self.equations.now().time,
                 step: h,
                 name: self.equations.unknown_name(singular.column),
                 redundant: self.equations.model().redundant_constraints(&start.z),
@@ -456,6 +456,21 @@ impl<E: Equations> Steps<E> {
     }
 }
 
+/// State at an instant.
+#[derive(Clone, Copy, Debug)]
+pub struct Now<'a> {
+    /// Time in ms.
+    pub time: f64,
+    /// Coordinates and multipliers.
+    pub z: &'a [f64],
+    /// Momentum of each coordinate.
+    pub momentum: &'a [f64],
+    /// Voltages and potentials of the last interval.
+    pub scalars: &'a [f64],
+    /// Multipliers at the start of the last step, where the method knows them there.
+    pub multipliers: &'a [f64],
+}
+
 /// The equations that lead from one instant to the next.
 pub trait Equations {
     /// Takes the voltages of a step between two times in ms, at the points where the method reads them.
@@ -514,20 +529,8 @@ pub trait Equations {
     /// Name of an unknown.
     fn unknown_name(&self, unknown: usize) -> String;
 
-    /// Time in ms.
-    fn time(&self) -> f64;
-
-    /// Coordinates and multipliers now.
-    fn coordinates(&self) -> &[f64];
-
-    /// Momentum of each coordinate now.
-    fn momentum(&self) -> &[f64];
-
-    /// Voltages and potentials of the last interval.
-    fn scalars(&self) -> &[f64];
-
-    /// Multipliers at the start of the step, where the method knows them there.
-    fn multipliers(&self) -> &[f64];
+    /// The state now.
+    fn now(&self) -> Now<'_>;
 
     /// Work in mJ that forces without a potential did over the last step, where its ends alone do not determine it.
     fn work(&self) -> Option<Work> {

@@ -23,12 +23,12 @@ pub(super) struct Tangent {
     is_approximate: bool,
 }
 
-fn pair(place: (usize, usize)) -> (u32, u32) {
-    (compact_index(place.0), compact_index(place.1))
+fn pair(entry: (usize, usize)) -> (u32, u32) {
+    (compact_index(entry.0), compact_index(entry.1))
 }
 
-fn uncounted(place: (u32, u32)) -> (usize, usize) {
-    (place.0 as usize, place.1 as usize)
+fn uncounted(entry: (u32, u32)) -> (usize, usize) {
+    (entry.0 as usize, entry.1 as usize)
 }
 
 /// The entry of the lower triangle that is this one or its transpose.

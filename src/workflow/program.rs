@@ -215,8 +215,12 @@ pub(super) fn states_of_rest<'m>(
 ) -> Result<Vec<(usize, RestProgram<'m>)>, BoundaryError> {
     let mut all = Vec::new();
     for (number, (motion, part)) in motions.iter().zip(parts).enumerate() {
-        let of = (motion.model, motion.boundary);
-        let own = rest_programs(&part.program, of, motion.task.control)?;
+        let ProgramMotion {
+            task,
+            model,
+            boundary,
+        } = *motion;
+        let own = rest_programs(&part.program, model, boundary, task.control)?;
         all.extend(own.into_iter().map(|one| (number, one)));
     }
     Ok(all)

@@ -311,8 +311,8 @@ fn value(
     let k = waypoint.unwrap_or(motion.intervals());
     let time = waypoint.map(|k| motion.times[k] / 1e3);
     if let Some(name) = cost.quantity.column(system) {
-        let of = (&optimum.model, &optimum.boundary);
-        let (reached, unit) = measured_value(of, (index, &cost.quantity), discrete, k)?;
+        let (model, boundary) = (&optimum.model, &optimum.boundary);
+        let (reached, unit) = measured_value(model, boundary, index, &cost.quantity, discrete, k)?;
         let asked = match &cost.function {
             CostFunction::Square { reference } => reference.at(motion.times[k]),
             CostFunction::Itself => 0.0,

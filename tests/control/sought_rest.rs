@@ -67,7 +67,7 @@ fn rest_programs_are_equilibria_with_exact_derivatives() {
     assert_eq!(boundary.sought_rest, [true; 2]);
     let initial = guess(&model, &boundary, &control, h, None);
     let motion = Transcription::new(&model, &boundary, &control, &initial).unwrap();
-    let states = rest_programs(&motion, (&model, &boundary), &control).unwrap();
+    let states = rest_programs(&motion, &model, &boundary, &control).unwrap();
     assert_eq!(states.len(), 2);
     for mut state in states {
         assert_eq!(state.shared.len(), model.coordinate_count());

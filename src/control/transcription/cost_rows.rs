@@ -36,7 +36,7 @@ use crate::control::transcription::limit_rows::Site;
 use crate::coordinates::{Reduced, StepPattern};
 use crate::functional::{Outer, Sample};
 use crate::math::Signal;
-use crate::model::{Model, Quantity, Time, Variable};
+use crate::model::{Model, Quantity, Time};
 use std::ops::Range;
 
 /// s in a ms.
@@ -209,9 +209,11 @@ impl CostRow {
 pub(super) fn fill_costs(
     outer: &mut [Outer],
     costs: &[CostRow],
-    (site, k): (Site, usize),
+    site: Site,
+    k: usize,
     sigma: f64,
-    (action, sample): (&Reduced, &Sample<'_>),
+    action: &Reduced,
+    sample: &Sample<'_>,
 ) {
     for cost in costs
         .iter()
@@ -282,7 +284,8 @@ pub(super) fn energy_rows(
     let sources = sources(costs, &model.system);
     let first = model.measured.len() - sources.len();
     let layout = model.action.layout();
-    let row = |(&source, measure): (&usize, &Option<usize>)| {
+    let measured = sources.iter().zip(&model.measured[first..]);
+    let rows = measured.filter_map(|(&source, measure)| {
         let (measure, scalar) = (*measure, model.variables.input(source));
         let (measure, scalar) = measure.zip(scalar)?;
         let vectors = model.action.instants.measures[measure].vectors();
@@ -305,9 +308,8 @@ pub(super) fn energy_rows(
             ends: ends(rest, source),
             intervals,
         })
-    };
-    let measured = &model.measured[first..];
-    sources.iter().zip(measured).filter_map(row).collect()
+    });
+    rows.collect()
 }
 
 /// Voltages of a source before the start and after the end; 0 where they are not known.
@@ -375,7 +377,8 @@ impl EnergyRow {
 pub(super) fn fill_energies(
     outer: &mut [Outer],
     rows: &[EnergyRow],
-    (k, sigma): (usize, f64),
+    k: usize,
+    sigma: f64,
     scalars: &[f64],
     count: usize,
 ) {
@@ -417,7 +420,8 @@ impl CostInput {
     /// The voltages and loads of an interval of a model.
     fn of_model(model: &Model, control: &Control) -> Vec<Self> {
         let slots = &model.action.layout().scalars;
-        let input = |(s, variable): (usize, &Variable)| {
+        let variables = &model.variables.of(Time::Interval)[model.variables.sources_range()];
+        let inputs = variables.iter().enumerate().map(|(s, variable)| {
             let source = variable.source.expect("an input of a source");
             let unit = unit_of(model, control, source);
             let size = control.size(variable, model);
@@ -430,9 +434,8 @@ impl CostInput {
                 scale: size / unit,
                 size,
             }
-        };
-        let variables = &model.variables.of(Time::Interval)[model.variables.sources_range()];
-        variables.iter().enumerate().map(input).collect()
+        });
+        inputs.collect()
     }
 }
 
@@ -441,7 +444,8 @@ impl Objective {
     pub(super) fn new(
         model: &Model,
         boundary: &BoundaryConditions,
-        (control, layout): (&Control, &Layout),
+        control: &Control,
+        layout: &Layout,
     ) -> Self {
         let objective = &control.objective;
         let (paid, energies) = (&objective.quantities, &objective.energies);

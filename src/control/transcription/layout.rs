@@ -71,9 +71,8 @@ impl Layout {
         };
         let rests = |i: usize| is_in_rest(i) && !model.is_memory(i);
         let is_balanced = |k: usize, i: usize| (k != end || rests(i)) && !model.is_prescribed(i);
-        let all = (intervals, twin);
-        let is_given = |column| is_given(column, (model, boundary, control), end);
-        let mut unknowns = Numbering::new(&model.variables, all, is_given, is_balanced);
+        let is_given = |column| is_given(column, model, boundary, control, end);
+        let mut unknowns = Numbering::new(&model.variables, intervals, twin, is_given, is_balanced);
         let span = Span {
             end,
             intervals,
@@ -82,7 +81,8 @@ impl Layout {
         let times = TimeRows::new(model, control, end, &mut unknowns);
         let limits = limit_rows(
             model,
-            (&boundary.limits.list, &boundary.rest),
+            &boundary.limits.list,
+            &boundary.rest,
             span,
             &unknowns,
         );
@@ -171,7 +171,9 @@ impl Layout {
 /// Returns true if a variable is given: by the start, the goal at instant `end`, or the problem, unless its value follows a time that is sought.
 fn is_given(
     column: Column,
-    (model, boundary, control): (&Model, &BoundaryConditions, &Control),
+    model: &Model,
+    boundary: &BoundaryConditions,
+    control: &Control,
     end: usize,
 ) -> bool {
     let variable = column.of(&model.variables);

@@ -60,14 +60,16 @@ impl LimitRow {
 /// or goal give all that it reads: there it is checked before. Those of inputs hold behind the end of the motion too.
 pub(super) fn limit_rows(
     model: &Model,
-    (list, rest): (&[BoundedQuantity], &[Option<Vec<f64>>; 2]),
+    list: &[BoundedQuantity],
+    rest: &[Option<Vec<f64>>; 2],
     span: Span,
     unknowns: &Numbering,
 ) -> Vec<LimitRow> {
     let map = &model.action.map;
     let mut first = 0;
     let mut others = model.measured[list.len()..].iter();
-    let row = |(bounded, measure): (&BoundedQuantity, &Option<usize>)| {
+    let pairs = list.iter().zip(&model.measured);
+    let rows = pairs.filter_map(|(bounded, measure)| {
         let before = match bounded.other_before() {
             Some(_) => others.next().expect("a measure of each quantity"),
             None => measure,
@@ -76,10 +78,10 @@ pub(super) fn limit_rows(
         let site = Site::from_quantity(&bounded.quantity);
         let reads = site.measure(model, measure);
         let step = (*before).filter(|_| bounded.quantity.before().is_some());
-        let step = step.map(|before| Step::new(before, &bounded.quantity, (model, rest), span));
+        let step = step.map(|before| Step::new(before, &bounded.quantity, model, rest, span));
         let before = step.as_ref().map(|step| site.measure(model, step.before));
         let support = support(reads, map);
-        let mut entries = entries((reads, site), before, &support);
+        let mut entries = entries(reads, site, before, &support);
         let has_length = reads.reads_rates() || bounded.rate.is_some();
         if has_length && unknowns.horizon().is_some() {
             entries.push((DURATION, 0));
@@ -105,7 +107,7 @@ pub(super) fn limit_rows(
             let mut entries = entries.iter();
             entries.any(|&entry| unknowns.column_of_entry(k, entry).is_some())
         };
-        at = unchecked((bounded, site), at, span, is_open);
+        at = unchecked(bounded, site, at, span, is_open);
         let mut vectors: Vec<usize> = Vec::new();
         for vector in reads.vectors() {
             if !vectors.contains(&vector) {
@@ -125,14 +127,15 @@ pub(super) fn limit_rows(
         };
         first += limit.at.len();
         Some(limit)
-    };
-    list.iter().zip(&model.measured).filter_map(row).collect()
+    });
+    rows.collect()
 }
 
 /// The rows of a limit without those at its ends of which nothing is open: start, goal and given inputs are checked before. Where all
 /// follows from prescribed motions nothing is checked before, and no row is left out.
 fn unchecked(
-    (bounded, site): (&BoundedQuantity, Site),
+    bounded: &BoundedQuantity,
+    site: Site,
     at: Range<usize>,
     span: Span,
     is_open: impl Fn(usize) -> bool,
@@ -171,7 +174,8 @@ fn support(reads: &dyn Measure, map: &CoordinateMap) -> Vec<usize> {
 
 /// Entries of the gradient of a measure, and of one that is subtracted in the interval before, which reads the same coordinates.
 fn entries(
-    (reads, site): (&dyn Measure, Site),
+    reads: &dyn Measure,
+    site: Site,
     before: Option<&dyn Measure>,
     support: &[usize],
 ) -> Vec<(usize, usize)> {
@@ -217,7 +221,8 @@ fn sites(when: When, site: Site, span: Span, reads_inputs: bool) -> Range<usize>
 
 impl Numbering {
     /// Column of an entry of the gradient of a limit at instant or interval k of a horizon.
-    pub(super) fn column_of_entry(&self, k: usize, (side, i): (usize, usize)) -> Option<usize> {
+    pub(super) fn column_of_entry(&self, k: usize, entry: (usize, usize)) -> Option<usize> {
+        let (side, i) = entry;
         match side {
             SCALAR => self.scalar(k, i),
             BEFORE => self.scalar(self.before(k)?, i),
@@ -309,7 +314,8 @@ impl Step {
     pub(super) fn new(
         before: usize,
         quantity: &Quantity,
-        (model, rest): (&Model, &[Option<Vec<f64>>; 2]),
+        model: &Model,
+        rest: &[Option<Vec<f64>>; 2],
         span: Span,
     ) -> Self {
         let is_impulse = matches!(quantity.what, What::Reaction { .. });

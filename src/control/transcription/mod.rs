@@ -104,7 +104,7 @@ impl<'m> Transcription<'m> {
         initial: &InitialGuess,
         layout: Layout,
     ) -> Result<Self, BoundaryError> {
-        let objective = Objective::new(model, boundary, (control, &layout));
+        let objective = Objective::new(model, boundary, control, &layout);
         let structure = Structure::new(model, &layout, &objective)?;
         let workspace = Workspace::new(model, boundary, control, initial, &layout);
         let momentum = StartMomentum::new(model, boundary, &layout, &structure);

@@ -5,7 +5,6 @@ use crate::control::identification::Costates;
 use crate::control::numbering::{Column, Row, Twin};
 use crate::control::transcription::Transcription;
 use crate::control::transcription::segment::Placed;
-use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt;
 use crate::nlp::Multipliers;
@@ -67,17 +66,10 @@ impl Transcription<'_> {
     /// The variables of a motion with interval length h (ms); those that are functions of time have the values of its instants and intervals.
     pub fn encode(&self, discrete: &DiscreteTrajectory, h: f64) -> Vec<f64> {
         let map = &self.model.action.map;
-        let here = |(z, instant): (&Vec<f64>, &Configuration)| {
-            let mut z = z.clone();
-            map.take_charts(&instant.z, &mut z);
-            z
-        };
-        let z: Vec<_> = discrete
-            .z
-            .iter()
-            .zip(&self.workspace.instants)
-            .map(here)
-            .collect();
+        let mut z = discrete.z.clone();
+        for (z, instant) in z.iter_mut().zip(&self.workspace.instants) {
+            map.take_charts(&instant.z, z);
+        }
         let last = discrete.held.as_ref().or(discrete.scalars.last());
         let last = last.expect("a motion has intervals");
         let value = |column: &Column| match *column {

@@ -172,7 +172,7 @@ impl Segment<'_> {
         if order == Order::Third {
             let (costs, sigma) = (self.shared.costs, self.shared.sigma);
             let sample = plain.sample([a, b]);
-            fill_costs(outer, costs, (site, k), sigma, (action, &sample));
+            fill_costs(outer, costs, site, k, sigma, action, &sample);
         }
         let interval = Interval { outer, ..plain };
         action.evaluate_interval(order, [a, b], &interval, scratch);
@@ -211,11 +211,9 @@ pub(super) fn instant_of(
             h: shared.h,
             ..Sample::of_instant(&instant.x, &[])
         };
-        let of = (action, &sample);
-        fill_costs(outer, shared.costs, (site, k), shared.sigma, of);
-        let count = action.layout().interval_scalars;
-        let at = (k, shared.sigma);
-        fill_energies(outer, shared.energies, at, shared.scalars, count);
+        let (sigma, count) = (shared.sigma, action.layout().interval_scalars);
+        fill_costs(outer, shared.costs, site, k, sigma, action, &sample);
+        fill_energies(outer, shared.energies, k, sigma, shared.scalars, count);
     }
     action.evaluate_instant(order, instant, outer, scratch);
     action.pull_back_instant(order, instant, j, scratch, values);

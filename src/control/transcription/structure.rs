@@ -1,7 +1,7 @@
 //! Structures of Jacobian and Hessian: the entries of the periodic values that they keep.
 
 use crate::control::error::BoundaryError;
-use crate::control::numbering::{Row, Twin};
+use crate::control::numbering::{Column, Row, Twin};
 use crate::control::transcription::cost_rows::{CostInput, Jump, Objective};
 use crate::control::transcription::layout::Layout;
 use crate::control::transcription::limit_rows::LimitRow;
@@ -35,9 +35,6 @@ pub(super) struct Structure {
     pub(super) jumps: Vec<Jump>,
 }
 
-/// Row, column and place among the values of an entry before those of given values are left out.
-type Candidate = (Option<usize>, Option<usize>, usize);
-
 impl Structure {
     /// Lays out the matrices, with scales of one.
     ///
@@ -61,9 +58,12 @@ impl Structure {
 }
 
 impl Matrix {
-    fn add(&mut self, row: usize, col: usize, place: usize) {
-        self.entries.push(row, col);
-        self.kept.push(Gather { place, scale: 1.0 });
+    /// Adds an entry that takes the value at a place, unless its row or column is none of the program.
+    fn add(&mut self, row: Option<usize>, col: Option<usize>, place: usize) {
+        if let (Some(row), Some(col)) = (row, col) {
+            self.entries.push(row, col);
+            self.kept.push(Gather { place, scale: 1.0 });
+        }
     }
 
     /// Scales the entries by their rows and columns.
@@ -74,134 +74,90 @@ impl Matrix {
     }
 }
 
-/// Entries of the Jacobian that the terms have, step by step, then those of the limits.
-fn jacobian_candidates(model: &Model, layout: &Layout) -> Result<Vec<Candidate>, BoundaryError> {
-    let (pattern, u) = (model.action.layout(), &layout.unknowns);
-    let mut list = Vec::new();
+/// Hands over the entries of ∇²Ŝ step by step: the variables of row and column, the place of the value, and true of an entry whose transpose came
+/// before or comes in its own order. Constraints are instantaneous: of them there is none by the interval length.
+fn entries(
+    model: &Model,
+    layout: &Layout,
+    mut add: impl FnMut(Column, Column, usize, bool),
+) -> Result<(), BoundaryError> {
+    let pattern = model.action.layout();
+    let at = |k: usize, i: usize| Column::Instant { k, i };
     for k in 0..=layout.intervals {
         stop::check()?;
         for (slot, (i, j)) in pattern.same.entries().enumerate() {
-            list.push((u.row(k, i), u.unknown(k, j), pattern.same_at(k) + slot));
+            add(at(k, i), at(k, j), pattern.same_at(k) + slot, i < j);
         }
-        for i in 0..pattern.unknowns {
-            list.push((u.row(k, i), u.horizon(), pattern.horizon_at(k) + i));
+        for i in 0..model.coordinate_count() {
+            add(at(k, i), Column::Horizon, pattern.horizon_at(k) + i, false);
         }
         if k == layout.intervals {
             break;
         }
+        let within = |s: usize| Column::Interval { k, s };
         for (slot, (i, j)) in pattern.cross.entries().enumerate() {
-            let [lower, upper] = [pattern.lower_at(k), pattern.upper_at(k)];
-            list.push((u.row(k + 1, i), u.unknown(k, j), lower + slot));
-            list.push((u.row(k, i), u.unknown(k + 1, j), upper + slot));
+            add(at(k + 1, i), at(k, j), pattern.lower_at(k) + slot, false);
+            add(at(k, i), at(k + 1, j), pattern.upper_at(k) + slot, true);
         }
         for side in 0..2 {
             for (slot, (i, s)) in pattern.mixed.entries().enumerate() {
                 let place = pattern.mixed_at(k, side) + slot;
-                list.push((u.row(k + side, i), u.scalar(k, s), place));
-                list.push((u.row_of_scalar(k, s), u.unknown(k + side, i), place));
+                add(at(k + side, i), within(s), place, false);
+                add(within(s), at(k + side, i), place, true);
             }
         }
         for (slot, (s, t)) in pattern.scalars.entries().enumerate() {
             let place = pattern.scalars_at(k) + slot;
-            list.push((u.row_of_scalar(k, s), u.scalar(k, t), place));
+            add(within(s), within(t), place, false);
             if s != t {
-                list.push((u.row_of_scalar(k, t), u.scalar(k, s), place));
+                add(within(t), within(s), place, true);
             }
         }
         for s in 0..pattern.interval_scalars {
             let place = pattern.horizon_scalars_at(k) + s;
-            list.push((u.row_of_scalar(k, s), u.horizon(), place));
+            add(within(s), Column::Horizon, place, false);
         }
     }
+    Ok(())
+}
+
+/// Entries of the Jacobian that the terms have, step by step, then those of the limits and of functions of time.
+fn jacobian(model: &Model, layout: &Layout) -> Result<Matrix, BoundaryError> {
+    let (u, mut matrix) = (&layout.unknowns, Matrix::default());
+    entries(model, layout, |row, col, place, _| {
+        matrix.add(u.row_of(row), u.number(col), place);
+    })?;
     let first = u.rows.len() - layout.limit_rows.len();
-    let mut place = pattern.values(layout.intervals);
+    let mut place = model.action.layout().values(layout.intervals);
     for (r, &(limit, k)) in layout.limit_rows.iter().enumerate() {
         for &entry in &layout.limits[limit].entries {
-            list.push((Some(first + r), u.column_of_entry(k, entry), place));
+            matrix.add(Some(first + r), u.column_of_entry(k, entry), place);
             place += 1;
         }
     }
     let first = layout.first_time_row();
     for r in 0..layout.times.len() {
         let column = Some(layout.times.column(r));
-        list.push((Some(first + r), column, place));
-        list.push((Some(first + r), u.horizon(), place + 1));
+        matrix.add(Some(first + r), column, place);
+        matrix.add(Some(first + r), u.horizon(), place + 1);
         place += 2;
     }
-    Ok(list)
-}
-
-fn jacobian(model: &Model, layout: &Layout) -> Result<Matrix, BoundaryError> {
-    let u = &layout.unknowns;
-    // The horizon column has no entry in the rows of constraints, which are instantaneous; limits name theirs.
-    let horizon = u.horizon();
-    let lasts = |row: Row| {
-        let variable = row.of(&model.variables);
-        variable.is_none_or(|variable| variable.role != Role::Multiplier)
-    };
-    let candidates = jacobian_candidates(model, layout)?;
     stop::check()?;
-    let mut matrix = Matrix::default();
-    for (row, col, place) in candidates {
-        let (Some(row), Some(col)) = (row, col) else {
-            continue;
-        };
-        if Some(col) != horizon || lasts(u.rows[row]) {
-            matrix.add(row, col, place);
-        }
-    }
     Ok(matrix)
 }
 
 /// Entries of the lower triangle of the Hessian that the terms have, step by step.
-fn hessian_candidates(model: &Model, layout: &Layout) -> Result<Vec<Candidate>, BoundaryError> {
-    let (pattern, u) = (model.action.layout(), &layout.unknowns);
-    let mut list = Vec::new();
-    for k in 0..=layout.intervals {
-        stop::check()?;
-        let same = pattern.same.entries().enumerate();
-        for (slot, (i, j)) in same.filter(|(_, (i, j))| i >= j) {
-            list.push((u.unknown(k, i), u.unknown(k, j), pattern.same_at(k) + slot));
-        }
-        for i in 0..model.coordinate_count() {
-            list.push((u.horizon(), u.unknown(k, i), pattern.horizon_at(k) + i));
-        }
-        if k == layout.intervals {
-            break;
-        }
-        for (slot, (i, j)) in pattern.cross.entries().enumerate() {
-            let place = pattern.lower_at(k) + slot;
-            list.push((u.unknown(k + 1, i), u.unknown(k, j), place));
-        }
-        for side in 0..2 {
-            for (slot, (i, s)) in pattern.mixed.entries().enumerate() {
-                let place = pattern.mixed_at(k, side) + slot;
-                list.push((u.scalar(k, s), u.unknown(k + side, i), place));
-            }
-        }
-        for (slot, (s, t)) in pattern.scalars.entries().enumerate() {
-            let place = pattern.scalars_at(k) + slot;
-            list.push((u.scalar(k, s), u.scalar(k, t), place));
-        }
-        for s in 0..pattern.interval_scalars {
-            let place = pattern.horizon_scalars_at(k) + s;
-            list.push((u.horizon(), u.scalar(k, s), place));
-        }
-    }
-    let square = pattern.horizon_square_at(layout.intervals);
-    list.push((u.horizon(), u.horizon(), square));
-    Ok(list)
-}
-
 fn hessian(model: &Model, layout: &Layout) -> Result<Matrix, BoundaryError> {
-    let candidates = hessian_candidates(model, layout)?;
-    stop::check()?;
-    let mut matrix = Matrix::default();
-    for (row, col, place) in candidates {
-        if let (Some(row), Some(col)) = (row, col) {
-            matrix.add(row.max(col), row.min(col), place);
+    let (u, mut matrix) = (&layout.unknowns, Matrix::default());
+    entries(model, layout, |row, col, place, is_transpose| {
+        let pair = u.number(row).zip(u.number(col));
+        if let Some((row, col)) = pair.filter(|_| !is_transpose) {
+            matrix.add(Some(row.max(col)), Some(row.min(col)), place);
         }
-    }
+    })?;
+    let square = model.action.layout().horizon_square_at(layout.intervals);
+    matrix.add(u.horizon(), u.horizon(), square);
+    stop::check()?;
     add_squares(model, layout, &mut matrix);
     Ok(matrix)
 }
@@ -217,7 +173,7 @@ fn add_squares(model: &Model, layout: &Layout, matrix: &mut Matrix) {
     for (slot, (i, j)) in pattern.cross.entries().enumerate() {
         let [row, col] = [(instant, i), (of, j)].map(|(k, i)| u.unknown(k, i));
         if let Some(square) = row.filter(|_| row == col) {
-            matrix.add(square, square, pattern.lower_at(of) + slot);
+            matrix.add(Some(square), Some(square), pattern.lower_at(of) + slot);
         }
     }
 }

@@ -246,16 +246,16 @@ fn under(
         kind: limit.as_ref().map(|l| l.kind),
     };
     let steps = STEPS[usize::from(!statics.model.action.map.of_nodes.is_empty())];
-    let (from, directions): (_, &[f64]) = match (&limit, is_reached) {
-        (_, true) => ((state.clone(), 1.0), &[1.0, -1.0]),
-        (_, false) => ((state.clone(), fraction), &[1.0]),
+    let (from, directions) = match is_reached {
+        true => (1.0, &[1.0, -1.0][..]),
+        false => (fraction, &[1.0][..]),
     };
     let mut met: Vec<RestState> = Vec::new();
     if is_reached {
         met.push(state.clone());
     }
     for &direction in directions {
-        let crossed = crossings(statics, &from.0, ramp, from.1, direction, steps);
+        let crossed = crossings(statics, &state, ramp, from, direction, steps);
         for found in crossed {
             ramp.apply(statics, 1.0);
             if is_stable(statics, &found, &voltages) == Some(true) {

@@ -287,9 +287,8 @@ impl<'m> Statics<'m> {
     /// Size of an update, relative to angles of one radian and the length of the system; of turns behind a chart their angle, whatever
     /// axes they have.
     pub(super) fn size(&self, update: &[f64]) -> f64 {
-        let relative = |(u, s): (&f64, &f64)| (u / s).abs();
         let worst = |a: f64, b: f64| if b.is_nan() { b } else { a.max(b) };
-        let singles = update.iter().zip(&self.scales).map(relative);
+        let singles = update.iter().zip(&self.scales).map(|(u, s)| (u / s).abs());
         let angle =
             |turns: &[usize; 3]| turns.map(|i| update[i]).iter().map(|u| u * u).sum::<f64>();
         let angles = self.charted.iter().map(|turns| angle(turns).sqrt());

@@ -10,7 +10,7 @@ use crate::dynamics::galerkin::state::{GalerkinEquations, StagePoint, between};
 use crate::dynamics::momenta::vector_momenta;
 use crate::dynamics::resolution::Balance;
 use crate::dynamics::solving::Drive;
-use crate::dynamics::stepper::Equations;
+use crate::dynamics::stepper::{Equations, Now};
 use crate::functional::{BlockMask, NodeBlocks, Order};
 use crate::math::{Matrix, Vector};
 use crate::model::Model;
@@ -270,26 +270,16 @@ impl Equations for GalerkinEquations<'_> {
         variables.unknown_of(points, unknown).to_string()
     }
 
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    fn coordinates(&self) -> &[f64] {
-        &self.points[0].z
-    }
-
-    fn momentum(&self) -> &[f64] {
-        &self.momentum
-    }
-
-    fn scalars(&self) -> &[f64] {
-        &self.samples[self.samples.len() - 1].scalars
-    }
-
-    fn multipliers(&self) -> &[f64] {
-        match self.rule {
-            Rule::Galerkin(_) => &self.multipliers[0],
-            Rule::Euler(_) | Rule::Alpha(_) => &[],
+    fn now(&self) -> Now<'_> {
+        Now {
+            time: self.time,
+            z: &self.points[0].z,
+            momentum: &self.momentum,
+            scalars: &self.samples[self.samples.len() - 1].scalars,
+            multipliers: match self.rule {
+                Rule::Galerkin(_) => &self.multipliers[0],
+                Rule::Euler(_) | Rule::Alpha(_) => &[],
+            },
         }
     }
 
@@ -320,8 +310,8 @@ impl GalerkinEquations<'_> {
                     sum[block] += term[side] * weight;
                 }
             }
-            let to = (&mut *combined, block);
-            self.massless.add_blocks((weights, row, point), blocks, to);
+            self.massless
+                .add_blocks(weights, [row, point], blocks, combined, block);
         }
         if let Rule::Alpha(alpha) = &self.rule {
             let factor = alpha.inertia() / h;

@@ -74,8 +74,8 @@ fn derivatives(points: &[f64], i: usize) -> Vec<f64> {
 pub(super) fn lagrange(points: &[f64], x: f64) -> Vec<f64> {
     let value = |v: usize| {
         let others = points.iter().enumerate().filter(|(k, _)| *k != v);
-        let factor = |(_, p): (usize, &f64)| (x - p) / (points[v] - p);
-        others.map(factor).product::<f64>()
+        let factors = others.map(|(_, p)| (x - p) / (points[v] - p));
+        factors.product::<f64>()
     };
     (0..points.len()).map(value).collect()
 }

@@ -107,9 +107,9 @@ impl Rule {
                 let sample = |i: usize| {
                     let at = |side: f64| {
                         let slopes = lobatto.derivatives[i].iter().enumerate();
-                        let weight =
-                            |(v, slope): (usize, &f64)| f64::from(v == i) + side * 0.5 * slope;
-                        slopes.map(weight).collect::<Vec<_>>()
+                        let weights =
+                            slopes.map(|(v, slope)| f64::from(v == i) + side * 0.5 * slope);
+                        weights.collect::<Vec<_>>()
                     };
                     let take = [at(-1.0), at(1.0)];
                     Weights {
@@ -267,7 +267,8 @@ impl Massless {
     /// Adds the share of the forces of a sample to those of the rows of a point.
     pub(super) fn add_forces(
         &self,
-        (weights, row): (&Weights, usize),
+        weights: &Weights,
+        row: usize,
         from: &SumDerivatives,
         forces: &mut [Vector],
     ) {
@@ -283,9 +284,11 @@ impl Massless {
     /// Adds the share of the blocks of a sample by the vectors of a point to one block of the rows of another.
     pub(super) fn add_blocks(
         &self,
-        (weights, row, point): (&Weights, usize, usize),
+        weights: &Weights,
+        [row, point]: [usize; 2],
         from: &Blocks,
-        (to, block): (&mut Blocks, usize),
+        to: &mut Blocks,
+        block: usize,
     ) {
         for side in 0..4 {
             let take = weights.take[side % 2][point];

@@ -270,8 +270,7 @@ impl GalerkinEquations<'_> {
                     }
                 }
             }
-            self.massless
-                .add_forces((weights, point), &out.plain, forces);
+            self.massless.add_forces(weights, point, &out.plain, forces);
         }
     }
 
