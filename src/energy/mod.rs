@@ -2,6 +2,7 @@
 
 mod along_span;
 mod charge;
+mod coefficient;
 mod constraint;
 mod elastic_law;
 mod kinetic;
@@ -20,13 +21,14 @@ pub use charge::{
     Capacitance, FlowingCharge, FlowingChargeField, GivenCharge, GivenChargeField, MeanCharge,
     PotentialDrop, SourceCurrent, SourcePower, StoredEnergy, VoltageAcross,
 };
+pub use coefficient::Coefficient;
 pub use constraint::{Coincidence, Orthogonality};
 pub use elastic_law::{ElasticConstants, ElasticLaw, Elasticity, NeoHooke};
 pub use kinetic::{
     DeadLoad, FollowingForce, Gravity, KineticCoupling, KineticEnergy, SurfaceCharge,
 };
 pub(crate) use law::law;
-pub use law::{Coefficient, Constants, Law};
+pub use law::{Constants, Law};
 pub use limit::{
     Angle, AngleStep, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
     ProjectionStep, SquaredDistance, SquaredField,

@@ -10,7 +10,7 @@ pub struct Sum {
     parts: Vec<Box<dyn Measure>>,
     /// Number of slots of each part.
     slots: Vec<usize>,
-    /// Where curved functions of the sum are taken: `∇²c(m) = c′ ∇²m + c″ ∇m ∇mᵀ`.
+    /// For curved functions of the sum: `∇²c(m) = c′ ∇²m + c″ ∇m ∇mᵀ`.
     square: Option<Square>,
 }
 
