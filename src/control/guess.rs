@@ -30,6 +30,18 @@ pub struct InitialGuess {
     pub carried: Carried,
 }
 
+impl InitialGuess {
+    /// A motion without costates.
+    pub fn of_motion(discrete: DiscreteTrajectory, h: f64) -> Self {
+        Self {
+            discrete,
+            h,
+            costates: None,
+            carried: Carried::default(),
+        }
+    }
+}
+
 /// Changes that an earlier solution needed to be a guess.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Carried {
@@ -56,12 +68,7 @@ pub fn guess(
         (_, Some(solved)) => from_solution(model, boundary, control, solved),
         (Guess::Simulate(voltages), _) => {
             let voltages = |time| voltages.at(time).to_vec();
-            InitialGuess {
-                discrete: under_voltages(model, boundary, control, h, voltages),
-                h,
-                costates: None,
-                carried: Carried::default(),
-            }
+            InitialGuess::of_motion(under_voltages(model, boundary, control, h, voltages), h)
         }
         _ => interpolate(model, boundary, control, h),
     }
@@ -150,27 +157,15 @@ fn interpolate(
         }
     }
     let scalars = model.scalars(&held);
-    let discrete = DiscreteTrajectory {
-        times: (0..=intervals).map(|k| k as f64 * h).collect(),
-        z: z.collect(),
-        scalars: vec![model.variables.scalars(&scalars); intervals],
-        ..DiscreteTrajectory::default()
-    };
-    InitialGuess {
-        discrete,
-        h,
-        costates: None,
-        carried: Carried::default(),
-    }
+    let scalars = vec![model.variables.scalars(&scalars); intervals];
+    InitialGuess::of_motion(DiscreteTrajectory::in_steps(h, z.collect(), scalars), h)
 }
 
 /// Joint coordinates of a state, where they determine all of it.
 fn joints_of(model: &Model, z: &[f64]) -> Option<Vec<f64>> {
     let tells_all = Graph::new(&model.system).has_one_coordinate_a_joint(&model.system);
     tells_all.then_some(())?;
-    let mut instant = model.action.map.instant();
-    instant.z.copy_from_slice(z);
-    model.action.map.place(&mut instant);
+    let instant = model.action.map.placed(z);
     Some(model.joints(&instant, &vec![0.0; model.joint_readings.len()]))
 }
 
@@ -204,11 +199,10 @@ fn from_solution(
             let k = (time / h) as usize;
             grids.mean(&solved.voltages, k.min(intervals - 1))
         };
+        let discrete = under_voltages(model, boundary, control, h, voltages);
         return InitialGuess {
-            discrete: under_voltages(model, boundary, control, h, voltages),
-            h,
-            costates: None,
             carried,
+            ..InitialGuess::of_motion(discrete, h)
         };
     }
     let z = match has_same_coordinates {
@@ -216,11 +210,8 @@ fn from_solution(
         false => along_joints(model, solved, intervals),
     };
     let discrete = DiscreteTrajectory {
-        times: (0..=intervals).map(|k| k as f64 * h).collect(),
-        z,
-        scalars: scalars(model, solved, grids, intervals),
         held: held(model, control, solved),
-        ..DiscreteTrajectory::default()
+        ..DiscreteTrajectory::in_steps(h, z, scalars(model, solved, grids, intervals))
     };
     InitialGuess {
         discrete,
@@ -304,11 +295,15 @@ pub(super) fn on_uniform_grid<'s>(
         let after = solved.times.partition_point(|&t| t <= time);
         after.clamp(1, intervals) - 1
     };
+    let place = |k: usize| {
+        let at = time(k as f64);
+        let i = step_at(at);
+        let part = (at - solved.times[i]) / (solved.times[i + 1] - solved.times[i]);
+        (i, part)
+    };
     let along = |rows: &[Vec<f64>]| -> Vec<Vec<f64>> {
         let row = |k: usize| {
-            let at = time(k as f64);
-            let i = step_at(at);
-            let part = (at - solved.times[i]) / (solved.times[i + 1] - solved.times[i]);
+            let (i, part) = place(k);
             let ends = rows[i].iter().zip(&rows[i + 1]);
             ends.map(|(a, b)| a + part * (b - a)).collect()
         };
@@ -320,9 +315,7 @@ pub(super) fn on_uniform_grid<'s>(
             return z;
         };
         for (k, z) in z.iter_mut().enumerate() {
-            let at = time(k as f64);
-            let i = step_at(at);
-            let part = (at - solved.times[i]) / (solved.times[i + 1] - solved.times[i]);
+            let (i, part) = place(k);
             let ends = [(1.0 - part, &*solved.z[i]), (part, &*solved.z[i + 1])];
             map.mean_of_charts(&ends, z);
         }

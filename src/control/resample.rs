@@ -8,6 +8,7 @@ use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::identification::{Costates, Solution};
 use crate::control::numbering::{Column, Row};
 use crate::control::problem::Control;
+use crate::control::transcription::Site;
 use crate::control::transcription::layout::Layout;
 use crate::coordinates::CoordinateMap;
 use crate::model::{Model, Role};
@@ -224,20 +225,22 @@ impl Layout {
 
     /// Costate of a limit or goal at new instant or interval k.
     fn carried(&self, limit: usize, k: usize, grids: Grids, old: &[f64]) -> f64 {
-        let of = self.limit(limit);
-        let site = match of.is_of_intervals {
-            true if k >= grids.to && !of.is_single => self.end,
-            true => grids.interval(k),
-            false => grids.nearest(k),
+        let of = &self.limits[limit];
+        let first = self.unknowns.rows.len() - self.limit_rows.len() + of.first;
+        let is_single = of.bounded.when.is_single();
+        let site = match of.site {
+            Site::Intervals if k >= grids.to && !is_single => self.end,
+            Site::Intervals => grids.interval(k),
+            Site::Instants => grids.nearest(k),
         };
-        let factor = match (of.is_single, of.is_of_intervals) {
+        let factor = match (is_single, of.site) {
             // A marker rests at the goal when its last step is nothing; the shorter that step, the dearer its length.
-            (true, true) => 1.0 / grids.ratio(),
-            (true, false) => 1.0,
+            (true, Site::Intervals) => 1.0 / grids.ratio(),
+            (true, Site::Instants) => 1.0,
             (false, _) => grids.ratio(),
         };
         let place = site.clamp(of.at.start, of.at.end.max(1) - 1);
-        let value = old.get(of.first + place - of.at.start);
+        let value = old.get(first + place - of.at.start);
         factor * value.copied().unwrap_or(0.0)
     }
 }

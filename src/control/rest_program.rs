@@ -22,7 +22,7 @@ use crate::control::boundary::is_set_at;
 use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::costs::{CostFunction, During, QuantityCost};
 use crate::control::error::BoundaryError;
-use crate::control::guess::{Carried, InitialGuess};
+use crate::control::guess::InitialGuess;
 use crate::control::inputs::Voltages;
 use crate::control::limits::{BoundedQuantity, Limits};
 use crate::control::problem::{BoundaryState, Control, Limit};
@@ -133,17 +133,8 @@ fn equations<'m>(
     {
         scalars[s] = parameter.guess;
     }
-    let initial = InitialGuess {
-        discrete: DiscreteTrajectory {
-            times: vec![0.0, h],
-            z: vec![z.to_vec(); 2],
-            scalars: vec![scalars],
-            ..DiscreteTrajectory::default()
-        },
-        h,
-        costates: None,
-        carried: Carried::default(),
-    };
+    let discrete = DiscreteTrajectory::in_steps(h, vec![z.to_vec(); 2], vec![scalars]);
+    let initial = InitialGuess::of_motion(discrete, h);
     let program = Transcription::of_any(model, &boundary, &rest, &initial)?;
     let point = program.start(&initial);
     let [rows, columns] = [program.constraints(), program.variables()].map(|one| one.lower.len());

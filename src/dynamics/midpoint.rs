@@ -33,7 +33,7 @@ pub struct Midpoint<'m> {
     momentum: Vec<f64>,
     momentum_next: Vec<f64>,
     /// Rates of the coordinates over the last step, and how they changed, for the first guess.
-    rates: Vec<f64>,
+    pub(super) rates: Vec<f64>,
     changes: Vec<f64>,
     /// Changes of the coordinates in the step.
     differences: Vec<f64>,
@@ -43,7 +43,7 @@ pub struct Midpoint<'m> {
     sizes: Vec<f64>,
     /// Lengths in ms of the last step and of the one before; zero where there was none.
     lengths: [f64; 2],
-    time: f64,
+    pub(super) time: f64,
     scratch: Scratch,
     values: Vec<f64>,
     /// Voltages and potentials of the interval.
@@ -90,19 +90,9 @@ impl<'m> Stepper<'m> {
         Self::by(equations, matrix, held, sizes, solving.newton)
     }
 
-    /// Prescribed motions have come to this time in ms.
-    pub(super) fn begun_at(&mut self, time: f64) {
-        self.equations_mut().time = time;
-    }
-
-    /// Takes the rates of the coordinates before the first step, for its guess and its error.
-    pub(super) fn began_with(&mut self, rates: &[f64]) {
-        self.equations_mut().rates.copy_from_slice(rates);
-    }
-
     /// The instant now.
     pub fn instant(&self) -> &Place {
-        &self.equations().here
+        &self.equations.here
     }
 }
 

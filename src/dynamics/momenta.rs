@@ -275,9 +275,7 @@ impl Start {
 
     /// With given rates of the coordinates.
     pub fn with_rates(model: &Model, z: Vec<f64>, rates: &[f64]) -> Self {
-        let mut instant = model.action.map.instant();
-        instant.z.copy_from_slice(&z);
-        model.action.map.place(&mut instant);
+        let mut instant = model.action.map.placed(&z);
         let momentum = model.action.momentum(&mut instant, rates);
         Self {
             z,

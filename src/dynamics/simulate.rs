@@ -121,14 +121,14 @@ pub fn go_on(
         },
         _ => {
             let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
-            stepper.begun_at(start.time);
+            stepper.equations.time = start.time;
             match lengths {
                 Lengths::Equal(_) | Lengths::Between(_) => {
                     record(&mut stepper, lengths, &drive, observer, &mut discrete)
                 }
                 Lengths::Controlled(control) => {
                     if let Some(rates) = &start.rates {
-                        stepper.began_with(rates);
+                        stepper.equations.rates.copy_from_slice(rates);
                     }
                     controlled(&mut stepper, control, &drive, observer, &mut discrete)
                 }
@@ -250,7 +250,7 @@ impl DiscreteTrajectory {
         self.z.push(stepper.coordinates().to_vec());
         self.momenta.push(stepper.momentum().to_vec());
         let mut scalars = stepper.scalars().to_vec();
-        let inputs = stepper.equations().model().variables.inputs();
+        let inputs = stepper.equations.model().variables.inputs();
         scalars[inputs].copy_from_slice(&drive.at(step, 0.5));
         self.scalars.push(scalars);
         self.ends.extend(drive.ends(step));
@@ -331,7 +331,7 @@ fn record<E: Equations>(
 
 /// The failure of a motion whose last instant violates a closing constraint that was left out.
 fn open_loop<E: Equations>(stepper: &Steps<E>, discrete: &DiscreteTrajectory) -> Option<StepError> {
-    let model = stepper.equations().model();
+    let model = stepper.equations.model();
     let (constraint, gap) = model.open_loop(discrete.z.last()?, OPEN)?;
     Some(StepError::OpenLoop {
         time: discrete.times.last().copied()?,

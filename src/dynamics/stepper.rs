@@ -67,16 +67,6 @@ impl<E: Equations> Steps<E> {
         }
     }
 
-    /// The equations.
-    pub(super) fn equations(&self) -> &E {
-        &self.equations
-    }
-
-    /// The equations.
-    pub(super) fn equations_mut(&mut self) -> &mut E {
-        &mut self.equations
-    }
-
     /// The method that factorises.
     pub fn solver(&self) -> String {
         self.updates.name()

@@ -261,6 +261,16 @@ pub enum Reading {
 }
 
 impl DiscreteTrajectory {
+    /// A motion in equal steps of h ms.
+    pub fn in_steps(h: f64, z: Vec<Vec<f64>>, scalars: Vec<Vec<f64>>) -> Self {
+        Self {
+            times: (0..z.len()).map(|k| k as f64 * h).collect(),
+            z,
+            scalars,
+            ..Self::default()
+        }
+    }
+
     /// Number of intervals.
     pub fn intervals(&self) -> usize {
         self.scalars.len()

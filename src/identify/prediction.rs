@@ -280,11 +280,9 @@ fn of_rest(
 ) -> Result<(DiscreteTrajectory, CourseDerivatives), IdentifyError> {
     let model = &setup.model;
     let start = Start::at_rest(model, state.z.clone());
-    let lasting = |intervals: usize| DiscreteTrajectory {
-        times: (0..=intervals).map(|k| k as f64).collect(),
-        z: vec![state.z.clone(); intervals + 1],
-        scalars: vec![state.scalars.clone(); intervals],
-        ..DiscreteTrajectory::default()
+    let lasting = |intervals: usize| {
+        let z = vec![state.z.clone(); intervals + 1];
+        DiscreteTrajectory::in_steps(1.0, z, vec![state.scalars.clone(); intervals])
     };
     let from = Beginning {
         start: &start,

@@ -296,12 +296,7 @@ pub(super) fn derivatives(
     let control = setup.open(voltages.clone(), intervals, h);
     let count = model.coordinate_count();
     let boundary = BoundaryConditions::without_goal(from.start.clone(), count);
-    let initial = InitialGuess {
-        discrete: discrete.clone(),
-        h,
-        costates: None,
-        carried: Default::default(),
-    };
+    let initial = InitialGuess::of_motion(discrete.clone(), h);
     let program = Transcription::of_any(model, &boundary, &control, &initial);
     let mut program = program.map_err(|error| setup.recording.wrong(error))?;
     let regime = match from.derivatives {

@@ -334,17 +334,8 @@ fn rest_derivatives(
     let n = model.coordinate_count();
     let start = Start::at_rest(model, state.z.clone());
     let boundary = BoundaryConditions::without_goal(start, n);
-    let initial = InitialGuess {
-        discrete: DiscreteTrajectory {
-            times: vec![0.0, 1.0],
-            z: vec![state.z.clone(); 2],
-            scalars: vec![state.scalars.clone()],
-            ..DiscreteTrajectory::default()
-        },
-        h: 1.0,
-        costates: None,
-        carried: Default::default(),
-    };
+    let (z, scalars) = (vec![state.z.clone(); 2], vec![state.scalars.clone()]);
+    let initial = InitialGuess::of_motion(DiscreteTrajectory::in_steps(1.0, z, scalars), 1.0);
     let program = Transcription::of_any(model, &boundary, &control, &initial);
     let program = program.map_err(NoSensitivity::refused)?;
     let singular = || NoSensitivity::refused("a state of rest has no derivative");

@@ -351,18 +351,18 @@ pub(super) fn shared_variables(
             WorkflowError::problem("control.free", format!("\"{}\" {reason}", constant.name))
         })?);
     }
-    let of_first = |places: &[usize]| first.variable_scale(places[0]);
+    let of_first = |places: &[usize]| first.column_scale(places[0]);
     let variable = |places: Vec<usize>| {
         let scale = of_first(&places);
         let each = places.iter().zip(programs);
-        let of = each.map(|(&place, of)| Some((place, scale / of.variable_scale(place))));
+        let of = each.map(|(&place, of)| Some((place, scale / of.column_scale(place))));
         let mut all: Vec<_> = of.collect();
         all.resize(programs.len(), None);
         SharedVariable(all)
     };
     let mut all: Vec<SharedVariable> = shared.into_iter().map(variable).collect();
     for (number, one) in (motions..).zip(beside) {
-        let scale = |program: usize, place: usize| programs[program].variable_scale(place);
+        let scale = |program: usize, place: usize| programs[program].column_scale(place);
         let coordinate = |&[of_motion, own]: &[usize; 2]| {
             let mut places = vec![None; programs.len()];
             let factor = scale(one.motion, of_motion) / scale(number, own);

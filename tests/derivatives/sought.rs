@@ -142,7 +142,7 @@ fn numbers(program: &mut Transcription<'_>, model: &Model, x: &[f64]) -> Numbers
     let columns: Vec<Column> = program.unknowns().columns.clone();
     let scales: Vec<f64> = (0..rows).map(|r| program.row_scale(r)).collect();
     // Sizes of inputs follow from constants: variables are compared in the units inside.
-    let units: Vec<f64> = (0..x.len()).map(|c| program.variable_scale(c)).collect();
+    let units: Vec<f64> = (0..x.len()).map(|c| program.column_scale(c)).collect();
     let is_parameter = |c: usize| columns[c].of(&model.variables).role == Role::Parameter;
     let variables: Vec<String> = (0..x.len()).map(|c| program.variable_name(c)).collect();
     let mut g = vec![0.0; rows];

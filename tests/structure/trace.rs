@@ -302,7 +302,7 @@ fn equations_under_a_given_voltage_are_those_at_this_voltage() {
         with_program(&system, control, |program, mut x| {
             let mut random = Random(9);
             let names: Vec<String> = (0..x.len()).map(|i| program.variable_name(i)).collect();
-            let scales: Vec<f64> = (0..x.len()).map(|i| program.variable_scale(i)).collect();
+            let scales: Vec<f64> = (0..x.len()).map(|i| program.column_scale(i)).collect();
             for ((x, name), scale) in x.iter_mut().zip(&names).zip(scales) {
                 *x += 0.01 * random.unit();
                 // One voltage in the unit of its variable, and what noise it took.

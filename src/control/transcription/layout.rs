@@ -13,12 +13,11 @@ use crate::control::boundary_conditions::{BoundaryConditions, Rests};
 use crate::control::limits::BoundedQuantity;
 use crate::control::numbering::{Column, Numbering, Row, Span, Twin};
 use crate::control::problem::{BoundaryState, Control, Duration};
-use crate::control::transcription::limit_rows::{LimitRow, Site, limit_rows};
+use crate::control::transcription::limit_rows::{LimitRow, limit_rows};
 use crate::coordinates::{Configuration, CoordinateMap};
 use crate::functional::Horizon;
 use crate::math::Signal;
 use crate::model::{Model, Role};
-use std::ops::Range;
 
 /// Number of intervals from which on a horizon is evaluated in two stretches.
 const TWO_STRETCHES: usize = 16;
@@ -36,9 +35,9 @@ pub(in crate::control) struct Layout {
     pub(in crate::control) unknowns: Numbering,
     /// Functions of time behind the equations of motion.
     pub(super) times: TimeRows,
-    pub(super) limits: Vec<LimitRow>,
+    pub(in crate::control) limits: Vec<LimitRow>,
     /// Limit, and instant or interval, of each row behind the equations.
-    pub(super) limit_rows: Vec<(usize, usize)>,
+    pub(in crate::control) limit_rows: Vec<(usize, usize)>,
 }
 
 impl Layout {
@@ -155,17 +154,6 @@ impl Layout {
         let is_cut = self.horizon == Horizon::Given && self.intervals >= TWO_STRETCHES;
         is_cut.then_some(self.intervals / 2)
     }
-
-    /// Returns the site of a limit or goal, to carry costates from one grid to another.
-    pub(in crate::control) fn limit(&self, index: usize) -> LimitSite {
-        let limit = &self.limits[index];
-        LimitSite {
-            is_single: limit.bounded.when.is_single(),
-            is_of_intervals: limit.site == Site::Intervals,
-            at: limit.at.clone(),
-            first: self.unknowns.rows.len() - self.limit_rows.len() + limit.first,
-        }
-    }
 }
 
 /// Returns true if a variable is given: by the start, the goal at instant `end`, or the problem, unless its value follows a time that is sought.
@@ -195,19 +183,6 @@ fn is_given(
         (Column::Parameter { .. }, _) => false,
         (Column::Horizon, _) => matches!(control.duration, Duration::Given(_)),
     }
-}
-
-/// Site of the rows of a limit or goal.
-#[derive(Clone, Debug)]
-pub(in crate::control) struct LimitSite {
-    /// True if it holds at one instant only.
-    pub(in crate::control) is_single: bool,
-    /// True if it is read in intervals, rather than at instants.
-    pub(in crate::control) is_of_intervals: bool,
-    /// Instants or intervals at which it is a row.
-    pub(in crate::control) at: Range<usize>,
-    /// Its first row.
-    pub(in crate::control) first: usize,
 }
 
 /// The variables and equations that the program of a control problem has.

@@ -30,15 +30,15 @@ pub(in crate::control) enum Site {
 
 /// A limit or goal before it becomes rows.
 #[derive(Clone, Debug)]
-pub(super) struct LimitRow {
-    pub(super) bounded: BoundedQuantity,
+pub(in crate::control) struct LimitRow {
+    pub(in crate::control) bounded: BoundedQuantity,
     /// Index among the measures of its site.
     pub(super) measure: usize,
-    pub(super) site: Site,
+    pub(in crate::control) site: Site,
     /// Instants or intervals at which it is a row.
-    pub(super) at: Range<usize>,
+    pub(in crate::control) at: Range<usize>,
     /// Its first row among those of all limits.
-    pub(super) first: usize,
+    pub(in crate::control) first: usize,
     /// Entries of its gradient: (side, entry of z), ([`SCALAR`], scalar), or those of the other marks.
     pub(super) entries: Vec<(usize, usize)>,
     /// Vectors it reads.

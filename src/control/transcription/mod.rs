@@ -182,11 +182,6 @@ impl<'m> Transcription<'m> {
         self.row_scales[row]
     }
 
-    /// Scale of a variable: value = scale · variable.
-    pub fn variable_scale(&self, column: usize) -> f64 {
-        self.variable_scales[column]
-    }
-
     /// Largest violation of the scaled rows; infinite where one has no value.
     pub fn violation(&mut self, x: &[f64]) -> f64 {
         let mut g = vec![0.0; self.layout.unknowns.rows.len()];

@@ -49,10 +49,7 @@ impl Decoder {
         }
         DiscreteTrajectory {
             held,
-            times: (0..z.len()).map(|k| k as f64 * h).collect(),
-            z,
-            scalars,
-            ..DiscreteTrajectory::default()
+            ..DiscreteTrajectory::in_steps(h, z, scalars)
         }
     }
 

@@ -3,7 +3,7 @@
 //! Implicit Euler steps with one Newton iteration each, (B/Δt − ∂f/∂q) Δq = f, as long as Δt admits: no motion grows by the matrix, and the
 //! step is short (pseudo-transient continuation). Forces need no potential: loads may follow what they act on.
 
-use crate::coordinates::{Configuration, Interval};
+use crate::coordinates::Interval;
 use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::statics::{ITERATIONS, Statics};
 use crate::dynamics::singular_configurations::{reversed, shortest};
@@ -36,7 +36,7 @@ pub(super) fn relax(
     let mut state = from.clone();
     statics.settle(&mut state, voltages)?;
     statics.evaluate(&state, voltages);
-    let mut placed = statics.instant().clone();
+    let mut placed = statics.a.clone();
     let largest = statics.largest_stiffness();
     let mut damping = largest;
     for _ in 0..STEPS {
@@ -65,12 +65,12 @@ pub(super) fn relax(
             statics.evaluate(&trial, voltages);
         }
         let is_there = statics.residual.iter().all(|row| row.is_finite());
-        if !is_short || !is_there || reversed(model, &placed, statics.instant()).is_some() {
+        if !is_short || !is_there || reversed(model, &placed, &statics.a).is_some() {
             damping = f64::max(damping, NONE * largest) / CUT;
             statics.evaluate(&state, voltages);
             continue;
         }
-        placed.clone_from(statics.instant());
+        placed.clone_from(&statics.a);
         if shortest(model, &placed).is_some_and(|(_, s)| s < COLLAPSED) {
             return None;
         }
@@ -99,11 +99,6 @@ impl Statics<'_> {
         let terms = action.intervals.terms.iter();
         let potential = terms.filter(|term| term.kind() == TermKind::Potential);
         potential.map(|term| term.energy(&sample)).sum()
-    }
-
-    /// The instant placed last.
-    pub(super) fn instant(&self) -> &Configuration {
-        &self.a
     }
 
     /// Brings coordinates onto the constraints by the shortest way, and potentials to Gauss's law; `None` where that fails.

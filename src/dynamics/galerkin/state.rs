@@ -88,11 +88,11 @@ impl<'m> Steps<GalerkinEquations<'m>> {
                 let first = FIRST * h;
                 let mut euler = Self::with(model, start, Rule::Euler(p), solving);
                 euler.go([0.0, first], first, drive)?;
-                let rates = euler.equations().last_rates();
+                let rates = euler.equations.last_rates();
                 euler.go([first, 2.0 * first], first, drive)?;
-                let later = euler.equations().last_rates();
+                let later = euler.equations.last_rates();
                 // No momentum tells the rates of vectors without mass: those of two steps are extrapolated.
-                for &i in euler.equations().massless.vectors() {
+                for &i in euler.equations.massless.vectors() {
                     v[i] = rates[i] * 2.0 - later[i];
                 }
                 let a = rates.iter().zip(&v).map(|(after, v)| (after - v) / first);
