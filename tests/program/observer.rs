@@ -194,7 +194,7 @@ fn an_observer_that_sees_nothing_has_no_gains() {
     let (status, out, err) = run(here, &arguments);
     assert_eq!(status, 0, "{out}{err}");
     assert!(
-        err.contains("no observer: not all that moves follows"),
+        err.contains("no observer: the state is not observable"),
         "{err}"
     );
     assert!(!here.join("blind/feedback.json").exists());
@@ -249,7 +249,7 @@ fn an_observer_of_too_exact_readings_tells_that_rounding_hides_the_state() {
     };
     let err = solved("1e-6 um");
     assert!(err.contains("no observer: rounding hides"), "{err}");
-    assert!(!err.contains("not all that moves follows"), "{err}");
+    assert!(!err.contains("the state is not observable"), "{err}");
     let err = solved("1 um");
     assert!(err.contains("the observer finds the state"), "{err}");
 }

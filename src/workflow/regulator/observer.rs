@@ -32,7 +32,7 @@ const BLIND: f64 = 1e-9;
 const COARSER: [f64; 3] = [1e1, 1e3, 1e5];
 /// Reason why a state cannot be found.
 const NOT_SEEN: &str =
-    "not all that moves follows from what is measured; expected more measured joints or markers";
+    "the state is not observable from these measurements; expected more measured joints or markers";
 
 impl Design<'_> {
     /// The observer of a motion and of its held goal, with the spectral radius of its errors.
