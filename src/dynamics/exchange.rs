@@ -190,8 +190,7 @@ impl SourceEnergies {
         for (k, row) in motion.voltages.iter().enumerate() {
             let time = motion.times[k + 1] - motion.times[k];
             let charge = charges.map_or(0.0, |charges| charges[k + 1] - charges[k]);
-            let under = (row[self.source], time);
-            let (supplied, heat) = circuit.exchange(charge, under);
+            let (supplied, heat) = circuit.exchange(charge, row[self.source], time);
             sum += row[self.source] * (supplied - charge);
             self.electrical_energy[k + 1] += sum;
             for ((sum, heat), column) in heats.iter_mut().zip(heat).zip(&mut columns) {

@@ -81,8 +81,8 @@ impl<F: Field, L: ElementLaw> Elastomer<F, L> {
                 Volume::Mean => lambda * mean.ln() / mean,
             };
             let mut stress = (F * F.transpose() - one) * (mu / J) + one * pressure;
-            if let Some(law) = self.isochoric() {
-                stress += isochoric_stress(law, F);
+            if let Some((law, mu)) = self.isochoric() {
+                stress += isochoric_stress(law, mu, F);
             }
             if let Some((k, phi)) = &electric {
                 let E: Vector = (0..NODES).map(|i| shape.gradient(i, g) * -phi[i]).sum();
@@ -104,7 +104,7 @@ impl<F: Field, L: ElementLaw> Elastomer<F, L> {
 
 /// Cauchy stress of an isochoric law.
 #[expect(non_snake_case, reason = "notation of the law")]
-fn isochoric_stress((law, mu): (IsochoricLaw, f64), F: &Matrix) -> Matrix {
+fn isochoric_stress(law: IsochoricLaw, mu: f64, F: &Matrix) -> Matrix {
     let (J, b) = (F.determinant(), F * F.transpose());
     let (s, I1) = (J.powf(-2.0 / 3.0), b.trace());
     let deviator = |m: Matrix| m - Matrix::identity() * (m.trace() / 3.0);

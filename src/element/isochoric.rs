@@ -193,7 +193,7 @@ pub(super) struct IsochoricNode<N> {
 #[expect(non_snake_case, reason = "notation of the law")]
 impl<N: Points> Isochoric<N> {
     #[inline(always)]
-    pub(super) fn new((law, mu): (IsochoricLaw, f64), F: &Nine<N>, ln_J: N) -> Self {
+    pub(super) fn new(law: IsochoricLaw, mu: f64, F: &Nine<N>, ln_J: N) -> Self {
         let s = ln_J.scaled(-2.0 / 3.0).exp();
         let I1 = contracted(F, F);
         let [value, first, second] = law.of_strain(mu, (I1 * s).shifted(-3.0));

@@ -112,7 +112,7 @@ impl<N: Points> Variations<N> {
         };
         let isochoric = match state.isochoric {
             None => None,
-            Some(law) => Some(Isochoric::new(law, &F, ln_J)),
+            Some((law, mu)) => Some(Isochoric::new(law, mu, &F, ln_J)),
         };
         Self {
             w,
@@ -240,7 +240,7 @@ impl<N: Points> Variations<N> {
         let mut charged = Charged::zero(token);
         let electric = match (&self.electric, state.electric) {
             (Some(field), Some((constants, _))) => {
-                charged.fill((self.w, &self.F), state, field, constants, &g);
+                charged.fill(self.w, &self.F, state, field, constants, &g);
                 Some(&charged)
             }
             _ => None,
@@ -403,7 +403,8 @@ impl<N: Points, const NODES: usize> Charged<N, NODES> {
     #[inline(always)]
     pub(super) fn fill(
         &mut self,
-        (w, F): (N::Plain, &Nine<N>),
+        w: N::Plain,
+        F: &Nine<N>,
         state: &ElementState<'_, N, NODES>,
         field: &ElectricField<N>,
         constants: &Dielectric,

@@ -49,7 +49,7 @@ impl<T: Number> Energy<4, T> for GivenCharge<T> {
     fn at<const ORDER: usize>(&self, p: &SVector<T, 4>, w: &SVector<T, 4>) -> OfSquare<T> {
         let electric = |i| self.capacitance.half_inverse(i);
         let none = |_| [T::zero(); 4];
-        OfSquare::new((p, w), self.capacitance.scale(), none, electric)
+        OfSquare::new(p, w, self.capacitance.scale(), none, electric)
     }
 }
 
@@ -113,7 +113,7 @@ impl<T: Number> Energy<3, T> for Capacitance<T> {
 
     fn at<const ORDER: usize>(&self, p: &SVector<T, 3>, w: &SVector<T, 3>) -> OfSquare<T> {
         let none = |_| [T::zero(); 4];
-        OfSquare::new((p, w), self.scale(), |i| self.of_squared_stretch(i), none)
+        OfSquare::new(p, w, self.scale(), |i| self.of_squared_stretch(i), none)
     }
 }
 
@@ -266,7 +266,7 @@ impl<T: Number> Energy<4, T> for StoredEnergy<T> {
 
     fn at<const ORDER: usize>(&self, p: &SVector<T, 4>, w: &SVector<T, 4>) -> OfSquare<T> {
         let half = |i| self.0.of_squared_stretch(i).map(|c| c.scaled(0.5));
-        OfSquare::new((p, w), self.0.scale(), |_| [T::zero(); 4], half)
+        OfSquare::new(p, w, self.0.scale(), |_| [T::zero(); 4], half)
     }
 }
 

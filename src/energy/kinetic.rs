@@ -23,7 +23,7 @@ impl<T: Number> Energy<3, T> for KineticEnergy<T> {
     fn at<const ORDER: usize>(&self, p: &SVector<T, 3>, w: &SVector<T, 3>) -> OfSquare<T> {
         let (half, none) = (self.mass.scaled(0.5), T::zero());
         let energy = |i| [half * i, half, none, none];
-        OfSquare::new((p, w), T::one(), energy, |_| [none; 4])
+        OfSquare::new(p, w, T::one(), energy, |_| [none; 4])
     }
 }
 

@@ -51,7 +51,8 @@ impl<T: Number> Energy<3, T> for SquaredDistance<T> {
         let [none, one] = [T::zero(), T::one()];
         let from_centre = p - self.centre.map(T::of);
         OfSquare::new(
-            (&from_centre, w),
+            &from_centre,
+            w,
             scale,
             |i| [i, one, none, none],
             |_| [none; 4],
@@ -106,7 +107,7 @@ impl<T: Number> Energy<4, T> for SquaredField<T> {
             by_i.map(|e| factor * e)
         };
         let scale = (self.length * self.length).recip();
-        OfSquare::new((p, w), scale, |_| [T::zero(); 4], inverse)
+        OfSquare::new(p, w, scale, |_| [T::zero(); 4], inverse)
     }
 }
 

@@ -37,7 +37,7 @@ impl<L: Elasticity<T>, T: Number> Energy<3, T> for ElasticCell<L, T> {
     fn at<const ORDER: usize>(&self, p: &SVector<T, 3>, w: &SVector<T, 3>) -> OfSquare<T> {
         let scale = (self.length * self.length).recip();
         let none = |_| [T::zero(); 4];
-        OfSquare::new((p, w), scale, |i| self.of_squared_stretch(i), none)
+        OfSquare::new(p, w, scale, |i| self.of_squared_stretch(i), none)
     }
 }
 
@@ -87,7 +87,7 @@ impl<L: Elasticity<T>, T: Number> Energy<4, T> for DielectricCell<L, T> {
         let elastic = |i| self.elastic.of_squared_stretch(i);
         let electric = |i| self.electric_of_squared_stretch(i);
         let scale = (self.elastic.length * self.elastic.length).recip();
-        OfSquare::new((p, w), scale, elastic, electric)
+        OfSquare::new(p, w, scale, elastic, electric)
     }
 }
 

@@ -32,7 +32,8 @@ impl<T: Number> OfSquare<T> {
     /// Makes the blocks from u and e: value and three derivatives by I each.
     #[inline(always)]
     pub(super) fn new<const M: usize>(
-        (p, w): (&SVector<T, M>, &SVector<T, M>),
+        p: &SVector<T, M>,
+        w: &SVector<T, M>,
         s: T,
         u: impl Fn(T) -> [T; 4],
         e: impl Fn(T) -> [T; 4],

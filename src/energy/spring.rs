@@ -41,7 +41,7 @@ impl<T: Number> Energy<3, T> for LinearSpring<T> {
     #[inline(always)]
     fn at<const ORDER: usize>(&self, p: &SVector<T, 3>, w: &SVector<T, 3>) -> OfSquare<T> {
         let none = |_| [T::zero(); 4];
-        OfSquare::new((p, w), T::one(), |i| self.of_squared_length(i), none)
+        OfSquare::new(p, w, T::one(), |i| self.of_squared_length(i), none)
     }
 }
 

@@ -189,7 +189,7 @@ impl<const NODES: usize> MaxwellElement<NODES> {
 impl<const NODES: usize> BranchLocal<NODES> {
     /// Derivatives by a node and a vector of a Gauss point.
     #[inline(always)]
-    fn mixed(&self, node: usize, (g, part): (usize, usize)) -> Matrix {
+    fn mixed(&self, node: usize, g: usize, part: usize) -> Matrix {
         let mut block = Matrix::zeros();
         for (axis, m) in coordinates(part) {
             for a in 0..3 {
@@ -218,8 +218,8 @@ impl<const NODES: usize> Derivatives for BranchLocal<NODES> {
     fn block(&self, i: usize, j: usize) -> Matrix {
         match (point::<NODES>(i), point::<NODES>(j)) {
             (None, None) => self.stiffness[i][j],
-            (None, Some(at)) => self.mixed(i, at),
-            (Some(at), None) => self.mixed(j, at).transpose(),
+            (None, Some((g, part))) => self.mixed(i, g, part),
+            (Some((g, part)), None) => self.mixed(j, g, part).transpose(),
             (Some((g, rows)), Some((_, columns))) => {
                 let mut block = Matrix::zeros();
                 for (a, m) in coordinates(rows) {

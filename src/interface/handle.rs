@@ -130,8 +130,8 @@ impl From<Handle<Load>> for Input {
 }
 
 impl From<(Handle<Solid>, &str)> for Input {
-    fn from((solid, electrode): (Handle<Solid>, &str)) -> Self {
-        Self::Electrode(solid, electrode.to_owned())
+    fn from(of: (Handle<Solid>, &str)) -> Self {
+        Self::Electrode(of.0, of.1.to_owned())
     }
 }
 

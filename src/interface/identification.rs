@@ -82,7 +82,8 @@ impl Recording {
     /// Readings of the place of a marker along a direction in mm at times in ms, with their standard deviation.
     pub fn marker(
         self,
-        (marker, along): (Handle<Marker>, Vector),
+        marker: Handle<Marker>,
+        along: Vector,
         readings: impl IntoIterator<Item = (f64, f64)>,
         deviation: impl Into<Option<f64>>,
     ) -> Self {

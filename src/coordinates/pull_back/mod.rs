@@ -69,11 +69,12 @@ impl PullBack {
         &mut self,
         kind: BlockKind,
         slots: [usize; 2],
-        (a, b): (usize, usize),
+        vectors: (usize, usize),
         plan: &mut Plan<'_>,
     ) {
         use Dependence::{Articulated, Linear};
         let [slot, transposed] = slots;
+        let (a, b) = vectors;
         match (&plan.map.vectors[a], &plan.map.vectors[b]) {
             (Articulated(a), Articulated(b)) => {
                 let pair = Pair {

@@ -34,7 +34,7 @@ impl Circuit {
 
     /// Charge in mC that the source supplies, and heat in mJ of resistor and leak, in a time in ms in which the muscle takes a charge in mC
     /// under a voltage in V of the source.
-    pub fn exchange(&self, charge: f64, (voltage, time): (f64, f64)) -> (f64, [f64; 2]) {
+    pub fn exchange(&self, charge: f64, voltage: f64, time: f64) -> (f64, [f64; 2]) {
         let through_leak = self.leak_conductance().map_or(0.0, |g| g * voltage * time);
         let supplied = self.division().map_or(charge, |part| part * charge) + through_leak;
         let heat = |resistance: Option<f64>, charge: f64| {
