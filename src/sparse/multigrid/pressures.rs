@@ -250,10 +250,13 @@ impl<E: Elements> Pressures<E> {
         }
     }
 
-    /// B x of one element.
+    /// B x of one element; zero where there is no element, as its nodes may lie beyond the list.
     #[inline(always)]
     fn along(&self, element: usize, x: &[AtNode]) -> f32 {
         let mut sums = AtNode::default();
+        if self.compliance[element] == 0.0 {
+            return 0.0;
+        }
         let slopes = self.slopes[self.elements.range(element)].iter();
         for (slopes, node) in slopes.zip(self.elements.nodes(element)) {
             let there = &x[node];
@@ -270,7 +273,8 @@ impl<E: Elements> Pressures<E> {
     }
 
     fn subtract(&self, p: &Field, to: &mut [AtNode]) {
-        for (element, p) in p.inner().iter().enumerate() {
+        let there = |(element, _): &(usize, &f32)| self.compliance[*element] != 0.0;
+        for (element, p) in p.inner().iter().enumerate().filter(there) {
             let slopes = self.slopes[self.elements.range(element)].iter();
             for (slopes, node) in slopes.zip(self.elements.nodes(element)) {
                 for (sum, slope) in to[node].iter_mut().zip(slopes) {
