@@ -81,7 +81,7 @@ pub(super) fn motions(
     Ok(output)
 }
 
-/// What the motions have in common, with their summaries in the order of the motions.
+/// The part that all motions have in common, with their summaries in the order of the motions.
 struct Together<'a> {
     request: &'a CommandInput,
     motions: &'a Motions,
