@@ -250,7 +250,7 @@ fn alone(
     found.map(|mut found| found.optima.remove(0))
 }
 
-/// What a solve with a free duration says, and its motion where that is as short as is asked for.
+/// The outcome of a solve with a free duration, and its motion where that is as short as is asked for.
 fn read(found: Optimum, given: f64) -> (Shortest, Option<Solution>) {
     let said = outcome(&found, given);
     let is_start = is_as_given(&found, given);

@@ -34,7 +34,7 @@ pub(crate) const MOST_INTERVALS: usize = 1_000_000;
 /// Intervals of the first grid where no number is given.
 const FIRST_INTERVALS: usize = 20;
 
-/// What is expected of keys of several motions in a problem of one.
+/// Expected in a problem of one motion for the keys of several.
 const NO_MOTIONS: &str = "none without \"motions\"";
 
 pub(crate) fn control(

@@ -166,7 +166,7 @@ impl LimitEntry for TensionLimitSpec {
     }
 }
 
-/// What is found of a muscle without a field.
+/// Error text of a field limit of a muscle without a field.
 const NO_ELECTRIC_TERM: &str = "whose material has no electric term";
 
 /// Error text of a field limit without a part.
