@@ -32,7 +32,7 @@ pub enum BoundaryError {
     Refused {
         /// Path of the part in the problem.
         place: &'static str,
-        /// What was found, and what is expected.
+        /// The finding, and the expectation.
         reason: String,
     },
     /// Start and goal cannot be moved in a program that stands.
