@@ -275,9 +275,7 @@ async function controls(page, run, told) {
     if (run.walks) await path(page, told);
     expect(Math.abs(time - 0.3) < 1e-3, `${told}: the slider sets ${time}`);
     await page.locator("#play").click();
-    await page.waitForTimeout(400);
-    const later = await page.evaluate(() => window.proboscis.clock.time / window.proboscis.clock.last);
-    expect(later > time, `${told}: it does not play`);
+    await page.waitForFunction((before) => window.proboscis.clock.time / window.proboscis.clock.last > before, time, { timeout: 20000 }).catch(() => expect(false, `${told}: it does not play`));
     await page.locator("#play").click();
   }
   if (run.target) {
