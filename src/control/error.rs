@@ -32,7 +32,7 @@ pub enum BoundaryError {
     Refused {
         /// Path of the part in the problem.
         place: &'static str,
-        /// The finding, and the expectation.
+        /// The value found and the one expected.
         reason: String,
     },
     /// Start and goal cannot be moved in a program that stands.

@@ -88,8 +88,8 @@ impl<'a> At<'a> {
         written: &Option<S>,
         make: impl FnOnce(&Self, &S) -> Result<T>,
     ) -> Result<Option<T>> {
-        let make = |one| make(&self.key(key), one);
-        written.as_ref().map(make).transpose()
+        let make = |entry: &Scope<'a>, one: &S| make(&self.inside(entry.clone()), one);
+        self.scope.optional(key, written, make)
     }
 
     /// Makes a value of each entry of an object here by its name.
