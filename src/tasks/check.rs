@@ -8,7 +8,7 @@ use crate::ipopt::LinearSolver;
 use crate::math::{Random, Signal, shortest};
 use crate::mesh::Mesh;
 use crate::model::{Coordinates, Model, System};
-use crate::nlp::differences::{DifferenceVariables, Matrix, WrongEntry};
+use crate::nlp::differences::{Matrix, WrongEntry};
 use crate::nlp::{Nlp, differences};
 use crate::stop;
 use crate::stop::TimeLimit;
@@ -24,8 +24,6 @@ const NOISE: f64 = 1e-2;
 const SEED: u64 = 7;
 /// Intervals checked where the problem has no grid of its own; all intervals are alike.
 const INTERVALS: usize = 6;
-/// Maximum number of entries of the Jacobian that are evaluated for the differences; of larger programs a part of the variables is checked.
-const WORK: f64 = 2e8;
 
 /// Result of a comparison of derivatives with differences.
 #[derive(Clone, Debug, Serialize)]
@@ -105,16 +103,11 @@ pub fn check(
     let each = point.x.iter().zip(&sizes);
     let moved = each.map(|(x, size)| x + NOISE * size * noise.between(-1.0, 1.0));
     let x: Vec<f64> = moved.collect();
-    let columns = columns(&program, &mut noise);
-    let along = DifferenceVariables {
-        columns: &columns,
-        sizes: &sizes,
-    };
     // What is evaluated while it becomes time to stop would be there in part, and seem to be wrong.
     let limit = stop::limit();
     drop(watch);
     let mut stopped = None;
-    let report = differences::check_along(&mut program, &x, along, SEED, || {
+    let report = differences::check_with_sizes(&mut program, &x, &sizes, SEED, || {
         stopped = limit.as_ref().and_then(TimeLimit::reached);
         stopped.is_some()
     });
@@ -231,15 +224,6 @@ fn sizes(program: &Transcription<'_>, model: &Model) -> Vec<f64> {
         _ => 1.0,
     };
     program.unknowns().columns.iter().map(of).collect()
-}
-
-/// The variables that are checked: all, or a random part of them whose differences take some minutes.
-fn columns(program: &Transcription<'_>, noise: &mut Random) -> Vec<usize> {
-    let count = program.unknowns().columns.len();
-    let entries = program.jacobian_structure().rows.len();
-    let share = WORK / (count as f64 * entries as f64);
-    let is_taken = |_: &usize| share >= 1.0 || noise.between(-1.0, 1.0).abs() < share;
-    (0..count).filter(is_taken).collect()
 }
 
 /// Names of the effects that couple the unknowns of a row and a column.

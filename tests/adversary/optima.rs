@@ -297,7 +297,7 @@ fn weighted(problem: &Value, factor: f64) -> Value {
 #[test]
 fn no_solved_problem_leaves_much_to_gain() {
     let (mut all, mut solved, mut failures) = (0, 0, Vec::new());
-    seeds(0, 60, &[], |seed| {
+    seeds(0, 40, &[], |seed| {
         let problem = problem(&mut Draw(Random::new(seed)));
         let first = program("solve", &problem);
         let summary = first.summary();

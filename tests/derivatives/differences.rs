@@ -2,6 +2,8 @@
 
 use crate::common::programs::{Program, bounds, hs071, one_variable, rosenbrock};
 use proboscis::nlp::differences::{EntryStatus, Matrix, TOLERANCE, check};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 const POINT: [f64; 4] = [1.3, 4.2, 3.1, 1.7];
 
@@ -242,8 +244,17 @@ fn a_thousand_variables_are_checked() {
     let n = 1000;
     let x: Vec<f64> = (0..n).map(|i| 1.5 + f64::from(i).sin()).collect();
     let mut program = chain(x.len());
+    let evaluations = Arc::new(AtomicUsize::new(0));
+    let (mut right, counted) = (chain(x.len()).jac, evaluations.clone());
+    program.jac = Box::new(move |x, values| {
+        counted.fetch_add(1, Ordering::Relaxed);
+        right(x, values);
+    });
     let report = check(&mut program, &x, 7);
     assert!(report.is_consistent(), "{report}");
+    assert_eq!(report.checked, x.len());
+    // Of three neighbours no row reads two: one evaluation here, and two for each third of the variables.
+    assert_eq!(evaluations.load(Ordering::Relaxed), 7);
     program.hessian_places[3 * 500 + 2] = (501, 499);
     let report = check(&mut program, &x, 7);
     let mut places: Vec<_> = report
@@ -259,4 +270,61 @@ fn a_thousand_variables_are_checked() {
             ("x[501]", "x[500]", EntryStatus::Missing)
         ]
     );
+}
+
+/// All variables enter one row of the Jacobian, and one of them all rows of the Hessian.
+#[test]
+fn rows_that_read_many_variables_are_checked() {
+    let n = 40;
+    let count = u32::try_from(n).expect("a small number");
+    let dense = move || Program {
+        variables: bounds(&vec![(0.0, 2.0); n]),
+        constraints: bounds(&[(0.0, 9.0), (0.0, 9.0)]),
+        jacobian_places: (0..count).map(|i| (0, i)).chain([(1, 0)]).collect(),
+        hessian_places: (0..count).map(|i| (count - 1, i)).collect(),
+        f: Box::new(move |x| x[n - 1] * x.iter().sum::<f64>()),
+        grad: Box::new(move |x, grad| {
+            grad.fill(x[n - 1]);
+            grad[n - 1] += x.iter().sum::<f64>();
+        }),
+        g: Box::new(|x, g| g.copy_from_slice(&[x.iter().sum(), x[0]])),
+        jac: Box::new(|_, values| values.fill(1.0)),
+        hess: Box::new(move |_, sigma, _, values| {
+            values.fill(sigma);
+            values[n - 1] = 2.0 * sigma;
+        }),
+    };
+    let x: Vec<f64> = (0..count).map(|i| 1.0 + f64::from(i).sin()).collect();
+    let report = check(&mut dense(), &x, 3);
+    assert!(report.is_consistent() && report.checked == n, "{report}");
+    // Of the Hessian alone: all but one variable may be moved at once, and a wrong, a missing entry show.
+    let free = move || Program {
+        constraints: bounds(&[(0.0, 9.0)]),
+        jacobian_places: vec![(0, 0)],
+        g: Box::new(|x, g| g[0] = x[0]),
+        ..dense()
+    };
+    let report = check(&mut free(), &x, 3);
+    assert!(report.is_consistent() && report.checked == n, "{report}");
+    let mut wrong = free();
+    wrong.hess = Box::new(move |_, sigma, _, values| {
+        values.fill(sigma);
+        values[n - 1] = 2.0 * sigma;
+        values[7] = 1.1 * sigma;
+    });
+    let mut missing = free();
+    missing.hessian_places[7] = (count - 1, 8);
+    let mut right = free().hess;
+    missing.hess = Box::new(move |x, sigma, y, values| {
+        right(x, sigma, y, values);
+        values[7] = 0.0;
+    });
+    for mut program in [wrong, missing] {
+        let report = check(&mut program, &x, 3);
+        let places = report
+            .wrong
+            .iter()
+            .map(|w| (w.row.as_str(), w.column.as_str()));
+        assert_eq!(places.collect::<Vec<_>>(), [("x[39]", "x[7]")], "{report}");
+    }
 }

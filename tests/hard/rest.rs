@@ -206,7 +206,7 @@ fn a_cube_of_distorted_elements_pulls_in() {
     }));
     let folder = tempfile::tempdir().unwrap();
     let (mut seen, mut curves) = (Vec::new(), Vec::new());
-    for (i, part) in [0.0, 0.15, 0.3].into_iter().enumerate() {
+    for (i, part) in [0.0, 0.3].into_iter().enumerate() {
         let mesh = folder.path().join(format!("cube{i}.msh"));
         std::fs::write(&mesh, distorted(part)).unwrap();
         let scene = json!({

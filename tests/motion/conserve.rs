@@ -178,7 +178,7 @@ fn the_energy_of_the_undamped_trunk_does_not_drift() {
         muscle.material.viscosity = None;
     }
     let h = 5.0;
-    let (blocks, block) = (100, 1000);
+    let (blocks, block) = (50, 1000);
     let model = Model::new(scene, Some(Coordinates::Reduced), h, &[]).unwrap();
     let voltages: Vec<f64> = (0..12)
         .map(|m| if m % 4 == 0 { 1500.0 } else { 300.0 })
@@ -199,7 +199,7 @@ fn the_energy_of_the_undamped_trunk_does_not_drift() {
     }
     assert_eq!(stepper.report().halved, 0);
 
-    // The energy at midpoints oscillates with O(h²) and is bounded by it over 500 s.
+    // The energy at midpoints oscillates with O(h²) and is bounded by it over 250 s.
     let deviation = {
         let m = mean(&errors);
         mean(&errors.iter().map(|e| (e - m) * (e - m)).collect::<Vec<_>>()).sqrt()

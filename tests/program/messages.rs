@@ -9,7 +9,7 @@ use proboscis::dynamics::{Start, simulate};
 use proboscis::files::read_problem;
 use proboscis::ipopt::{Options, StartingPoint, solve};
 use proboscis::model::Model;
-use proboscis::nlp::differences::{DifferenceVariables, TOLERANCE, check_along};
+use proboscis::nlp::differences::{TOLERANCE, check_with_sizes};
 use proboscis::nlp::{Nlp, Status};
 use proboscis::stop;
 use proboscis::stop::Questions;
@@ -216,11 +216,7 @@ fn two_differences_have_to_agree_before_an_entry_is_wrong() {
         program
     };
     let check = |a: f64, wrong: f64, size: f64| {
-        let along = DifferenceVariables {
-            columns: &[0],
-            sizes: &[size],
-        };
-        check_along(&mut wave(a, wrong), &[0.3008], along, 3, || false)
+        check_with_sizes(&mut wave(a, wrong), &[0.3008], &[size], 3, || false)
     };
     let report = check(2e3, 0.0, 1.0);
     assert!(
@@ -235,16 +231,7 @@ fn two_differences_have_to_agree_before_an_entry_is_wrong() {
         report.is_consistent() && report.hessian < 0.1 * TOLERANCE,
         "{report}"
     );
-    let stopped = check_along(
-        &mut wave(1.0, 0.0),
-        &[0.3008],
-        DifferenceVariables {
-            columns: &[0],
-            sizes: &[1.0],
-        },
-        3,
-        || true,
-    );
+    let stopped = check_with_sizes(&mut wave(1.0, 0.0), &[0.3008], &[1.0], 3, || true);
     assert!(!stopped.is_consistent() && stopped.left == 1 && stopped.checked == 0);
 }
 

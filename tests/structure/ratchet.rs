@@ -23,7 +23,7 @@ const SIZES: [(&str, usize, usize); 26] = [
     ("math", 1450, 9),
     ("mesh", 1750, 12),
     ("model", 12750, 59),
-    ("nlp", 1900, 7),
+    ("nlp", 2050, 8),
     ("report", 6550, 33),
     ("sensitivity", 2500, 8),
     ("sparse", 7550, 34),

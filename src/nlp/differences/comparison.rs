@@ -73,25 +73,34 @@ impl Comparison {
         }
     }
 
-    /// Compares the rows from `first` on of a column with their differences.
+    /// Returns true if a row changes of which no column of a group has an entry.
+    pub(super) fn unread(&self, group: &[usize], changes: impl Fn(usize) -> bool) -> bool {
+        let mut is_read = vec![false; self.terms.len()];
+        let entries = group.iter().flat_map(|&column| &self.columns[column]);
+        entries.for_each(|&(row, _)| is_read[row] = true);
+        (0..is_read.len()).any(|row| !is_read[row] && changes(row))
+    }
+
+    /// Compares rows of a column with their differences: all that are meant, or those of them that have an entry.
     pub(super) fn compare(
         &mut self,
         column: usize,
-        first: usize,
+        all: bool,
+        is_meant: impl Fn(usize) -> bool,
         difference: impl Fn(usize) -> f64,
     ) {
         let mut stored = self.columns[column].iter().copied().peekable();
-        assert!(
-            stored.peek().is_none_or(|&(row, _)| row >= first),
-            "column {column} has an entry above the diagonal"
-        );
-        for row in first..self.terms.len() {
+        let rows: Vec<usize> = match all {
+            true => (0..self.terms.len()).collect(),
+            false => stored.clone().map(|(row, _)| row).collect(),
+        };
+        for row in rows {
             let (place, analytic) = match stored.next_if(|&(stored_row, _)| stored_row == row) {
                 Some((_, value)) => (EntryStatus::Stored, value),
                 None => (EntryStatus::Missing, 0.0),
             };
             let difference = difference(row);
-            if place == EntryStatus::Stored || difference != 0.0 {
+            if is_meant(row) && (place == EntryStatus::Stored || difference != 0.0) {
                 self.largest[row] = self.largest[row].max(analytic.abs()).max(difference.abs());
                 self.pairs.push(Pair {
                     row,
@@ -103,6 +112,11 @@ impl Comparison {
                 });
             }
         }
+    }
+
+    /// Takes back the comparison of columns.
+    pub(super) fn forget(&mut self, columns: &[usize]) {
+        self.pairs.retain(|pair| !columns.contains(&pair.column));
     }
 
     /// Columns with entries above the tolerance.
@@ -160,6 +174,10 @@ impl Comparison {
             } = pair;
             greatest = greatest.max(error);
             if error > TOLERANCE {
+                let (row, column) = match matrix {
+                    Matrix::Hessian => (row.max(column), row.min(column)),
+                    _ => (row, column),
+                };
                 let (row, column) = (row_name(row), nlp.variable_name(column));
                 wrong.push(WrongEntry {
                     matrix,

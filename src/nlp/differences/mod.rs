@@ -2,7 +2,8 @@
 //!
 //! The gradient is compared with differences of f, the Jacobian with differences of g, and the Hessian with differences of
 //! the gradient of the Lagrangian, σ ∇f + Σ yᵢ ∇gᵢ, for random σ and y away from one: a Hessian that ignores σ or the size
-//! of y shows. Every pair of row and column is checked, so an entry missing in the structure shows too.
+//! of y shows. Every pair of row and column is checked, so an entry missing in the structure shows too. Variables of which no row
+//! reads two are moved at once; those of a group that shows a doubtful entry are moved once more, one by one.
 //!
 //! # What an error is relative to
 //!
@@ -23,6 +24,7 @@
 //! differences are apart by about what each is off; a wrong entry is off by the same from both.
 
 mod comparison;
+mod pattern;
 
 use crate::math::Random;
 use crate::nlp::{Entries, Nlp};
@@ -30,6 +32,7 @@ use crate::nlp::{Entries, Nlp};
 use comparison::Comparison;
 pub use comparison::TOLERANCE;
 pub use comparison::{EntryStatus, Matrix, Report, WrongEntry};
+use pattern::Pattern;
 
 /// The first step of a difference over the second one.
 const SHORTER: f64 = 8.0;
@@ -37,41 +40,27 @@ const SHORTER: f64 = 8.0;
 /// Wrong entries listed in a report.
 const LISTED: usize = 20;
 
-/// The variables along which differences are taken.
-#[derive(Clone, Copy, Debug)]
-pub struct DifferenceVariables<'a> {
-    /// The variables, ascending.
-    pub columns: &'a [usize],
-    /// The size of every variable of the program: a change of that size matters.
-    pub sizes: &'a [f64],
-}
-
 /// Compares all derivatives of `nlp` at `x` with central differences; `seed` picks σ and y.
 ///
-/// The cost is two evaluations of f, ∇f, g and ∇g per variable.
+/// The cost is two evaluations of f per variable, and of ∇f, g and ∇g per group of variables of which no row reads two.
 ///
 /// # Panics
 ///
 /// If `x` has the wrong length, or if an entry of a structure lies outside its matrix or above the diagonal of the Hessian.
 pub fn check(nlp: &mut dyn Nlp, x: &[f64], seed: u64) -> Report {
-    let (columns, sizes) = ((0..x.len()).collect::<Vec<_>>(), vec![1.0; x.len()]);
-    let along = DifferenceVariables {
-        columns: &columns,
-        sizes: &sizes,
-    };
-    check_along(nlp, x, along, seed, || false)
+    check_with_sizes(nlp, x, &vec![1.0; x.len()], seed, || false)
 }
 
-/// Compares like [`check`] the derivatives by some variables, each with steps of its size; those left when `stop` says so
-/// are counted.
+/// Compares derivatives like [`check`], with steps of the size of each variable: a change of that size matters. Variables left when `stop`
+/// says so are counted.
 ///
 /// # Panics
 ///
 /// As [`check`], or if a size is missing.
-pub fn check_along(
+pub fn check_with_sizes(
     nlp: &mut dyn Nlp,
     x: &[f64],
-    DifferenceVariables { columns, sizes }: DifferenceVariables<'_>,
+    sizes: &[f64],
     seed: u64,
     mut stop: impl FnMut() -> bool,
 ) -> Report {
@@ -89,27 +78,42 @@ pub fn check_along(
         costates,
         jacobian: nlp.jacobian_structure(),
     };
+    let pattern = Pattern::new(&lagrangian.jacobian, &nlp.hessian_structure(), n);
     let mut report = Report::default();
     let Some(mut derivatives) = Derivatives::at(nlp, &lagrangian, x, &mut stop) else {
-        report.left = columns.len();
+        report.left = n;
         return report;
     };
     let step = |j: usize| f64::EPSILON.cbrt() * sizes[j] * x[j].abs().max(1.0);
-    for &j in columns {
-        if stop() {
-            report.left += 1;
-            continue;
+    let mut groups = pattern.groups(m);
+    while !groups.is_empty() {
+        let (mut compared, mut alone) = (Vec::new(), Vec::new());
+        for group in groups {
+            if stop() {
+                report.left += group.len();
+                continue;
+            }
+            let slopes = Slopes::along(nlp, &lagrangian, x, &group, step);
+            match slopes.is_some_and(|slopes| derivatives.compare(&pattern, &group, &slopes)) {
+                true => compared.push(group),
+                false if group.len() == 1 => report.unchecked.push(nlp.variable_name(group[0])),
+                false => alone.extend(group),
+            }
         }
-        let Some(slope) = Slope::along(nlp, &lagrangian, x, j, step(j)) else {
-            report.unchecked.push(nlp.variable_name(j));
-            continue;
-        };
-        report.checked += 1;
-        derivatives.compare(j, &slope);
+        let doubted = derivatives.doubted();
+        for group in compared.into_iter().filter(|group| group.len() > 1) {
+            if group.iter().any(|j| doubted.binary_search(j).is_ok()) {
+                derivatives.forget(&group);
+                alone.extend(group);
+            }
+        }
+        groups = alone.into_iter().map(|j| vec![j]).collect();
     }
+    report.checked = n - report.left - report.unchecked.len();
     for j in derivatives.doubted() {
-        if let Some(slope) = Slope::along(nlp, &lagrangian, x, j, step(j) / SHORTER) {
-            derivatives.compare_again(j, &slope);
+        let shorter = |j: usize| step(j) / SHORTER;
+        if let Some(slopes) = Slopes::along(nlp, &lagrangian, x, &[j], shorter) {
+            derivatives.compare_again(j, &slopes);
         }
     }
     derivatives.judge(nlp, &mut report);
@@ -147,7 +151,9 @@ impl Derivatives {
         jacobian.add_linear_terms(x);
         go_on()?;
         let terms = lagrangian.term_sizes(&here);
-        let hessian = Comparison::new(&nlp.hessian_structure(), &hessian, terms, n);
+        let mut whole = nlp.hessian_structure();
+        pattern::mirror(&mut whole, &mut hessian);
+        let hessian = Comparison::new(&whole, &hessian, terms, n);
         Some(Self([
             (Matrix::Gradient, gradient),
             (Matrix::Jacobian, jacobian),
@@ -155,12 +161,29 @@ impl Derivatives {
         ]))
     }
 
-    /// Compares the entries of column j.
-    fn compare(&mut self, j: usize, slope: &Slope) {
-        for (matrix, of) in &mut self.0 {
-            let first = if *matrix == Matrix::Hessian { j } else { 0 };
-            of.compare(j, first, |i| slope.of(*matrix, i));
+    /// Compares the entries of a group of columns; false, and none is compared, where a value changes that reads none of several.
+    fn compare(&mut self, pattern: &Pattern, group: &[usize], slopes: &Slopes) -> bool {
+        let is_alone = group.len() == 1;
+        let mut rows = self.0[1..].iter();
+        let is_unread = |(matrix, of): &(Matrix, Comparison)| {
+            of.unread(group, |i| slopes.change(*matrix, 0, i) != 0.0)
+        };
+        if !is_alone && rows.any(is_unread) {
+            return false;
         }
+        for (member, &j) in group.iter().enumerate() {
+            for (matrix, of) in &mut self.0 {
+                let is_compared = |i| *matrix != Matrix::Hessian || pattern.is_along(j, i);
+                let slope = |i| slopes.of(*matrix, member, i);
+                of.compare(j, is_alone, is_compared, slope);
+            }
+        }
+        true
+    }
+
+    /// Takes back the comparison of a group of columns.
+    fn forget(&mut self, group: &[usize]) {
+        self.0.iter_mut().for_each(|(_, of)| of.forget(group));
     }
 
     /// Columns with an entry above the tolerance, ascending.
@@ -172,9 +195,9 @@ impl Derivatives {
     }
 
     /// Compares the doubted entries of column j with a shorter step.
-    fn compare_again(&mut self, j: usize, slope: &Slope) {
+    fn compare_again(&mut self, j: usize, slopes: &Slopes) {
         for (matrix, of) in &mut self.0 {
-            of.compare_again(j, |i| slope.of(*matrix, i));
+            of.compare_again(j, |i| slopes.of(*matrix, 0, i));
         }
     }
 
@@ -260,43 +283,61 @@ impl DirectionSample {
     }
 }
 
-/// Central differences along one variable.
-struct Slope {
+/// Central differences along the variables of a group.
+struct Slopes {
     ahead: DirectionSample,
     behind: DirectionSample,
-    width: f64,
+    /// Change of f along each variable by itself.
+    objective: Vec<f64>,
+    /// Width of the step along each variable.
+    width: Vec<f64>,
 }
 
-impl Slope {
-    /// Over a step to both sides; `None` where a value does not exist there.
+impl Slopes {
+    /// Over steps to both sides; `None` where a value does not exist there.
     fn along(
         nlp: &mut dyn Nlp,
         lagrangian: &Lagrangian,
         x: &[f64],
-        j: usize,
-        step: f64,
+        group: &[usize],
+        step: impl Fn(usize) -> f64,
     ) -> Option<Self> {
-        let mut moved = x.to_vec();
-        moved[j] = x[j] + step;
-        let (end, ahead) = (moved[j], DirectionSample::at(nlp, lagrangian, &moved));
-        moved[j] = x[j] - step;
-        let behind = DirectionSample::at(nlp, lagrangian, &moved);
-        let width = end - moved[j];
+        let moved = |group: &[usize], sign: f64| {
+            let mut moved = x.to_vec();
+            group.iter().for_each(|&j| moved[j] += sign * step(j));
+            moved
+        };
+        let ends = [1.0, -1.0].map(|sign| moved(group, sign));
+        let width = group.iter().map(|&j| ends[0][j] - ends[1][j]).collect();
+        let [ahead, behind] = ends.map(|end| DirectionSample::at(nlp, lagrangian, &end));
+        let objective = match group {
+            [_] => vec![ahead.objective - behind.objective],
+            _ => {
+                let mut at = |j: usize, sign| nlp.objective(&moved(&[j], sign));
+                let change = |&j: &usize| at(j, 1.0) - at(j, -1.0);
+                group.iter().map(change).collect()
+            }
+        };
         (ahead.exists() && behind.exists()).then_some(Self {
             ahead,
             behind,
+            objective,
             width,
         })
     }
 
-    /// Of the value whose derivatives are in row i of a matrix.
-    fn of(&self, matrix: Matrix, i: usize) -> f64 {
-        let value = |of: &DirectionSample| match matrix {
-            Matrix::Gradient => of.objective,
-            Matrix::Jacobian => of.constraints[i],
-            Matrix::Hessian => of.lagrangian[i],
-        };
-        (value(&self.ahead) - value(&self.behind)) / self.width
+    /// Change of the value whose derivatives are in row i of a matrix, along a member of the group.
+    fn change(&self, matrix: Matrix, member: usize, i: usize) -> f64 {
+        match matrix {
+            Matrix::Gradient => self.objective[member],
+            Matrix::Jacobian => self.ahead.constraints[i] - self.behind.constraints[i],
+            Matrix::Hessian => self.ahead.lagrangian[i] - self.behind.lagrangian[i],
+        }
+    }
+
+    /// Difference quotient of that value.
+    fn of(&self, matrix: Matrix, member: usize, i: usize) -> f64 {
+        self.change(matrix, member, i) / self.width[member]
     }
 }
 
