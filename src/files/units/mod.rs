@@ -3,4 +3,4 @@
 pub mod quantity;
 pub(crate) mod unit;
 
-pub(crate) use unit::si;
+pub(crate) use quantity::si;

@@ -1,28 +1,37 @@
 //! Quantities as written in JSON: numbers in SI units or strings with a unit, converted once to g, mm, ms, N, MPa, V.
 
 use crate::files::json::either::Scalar;
-use crate::files::units::unit::{Dimension, Unit, Written, parts, scale, symbol};
+use crate::files::units::unit::{Dimension, Unit, Written, parts, scale};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use std::borrow::Cow;
 use std::fmt;
 use std::marker::PhantomData;
-use uom::si;
-use uom::si::ISQ;
-use uom::typenum::{N1, N2, N4, P1, P2, Z0};
+use std::sync::LazyLock;
 
-/// A kind of quantity: its name, an example, and the dimensions it is written in.
+/// A kind of quantity: its name, an example, and the units it is written in.
 #[derive(Clone, Debug)]
 pub struct Kind {
     /// Name with article: `a length`.
     pub name: &'static str,
     /// Example with quotes: `"50 mm"`.
     pub example: &'static str,
-    /// Accepted dimensions, the coherent one first; they differ in powers of the radian only.
+    /// Units of the accepted dimensions, the coherent one first; they differ in powers of the radian only.
+    units: &'static [&'static str],
     dimensions: Vec<Dimension>,
 }
 
 impl Kind {
+    fn new(name: &'static str, example: &'static str, units: &'static [&'static str]) -> Self {
+        let dimension = |unit: &&str| Unit::parse(unit).unwrap_or(Unit::ONE).dimension;
+        Self {
+            name,
+            example,
+            units,
+            dimensions: units.iter().map(dimension).collect(),
+        }
+    }
+
     /// Name and example, for messages.
     pub fn expected(&self) -> String {
         format!("{}, such as {}", self.name, self.example)
@@ -34,8 +43,14 @@ impl Kind {
     }
 
     /// Symbol of the SI unit; empty of a plain number.
-    pub(crate) fn symbol(&self) -> String {
-        symbol(self.dimensions[0])
+    pub(crate) fn symbol(&self) -> &'static str {
+        self.units[0]
+    }
+
+    /// Symbol of its SI unit of this dimension.
+    fn symbol_of(&self, dimension: Dimension) -> Option<&'static str> {
+        let own = self.dimensions.iter().position(|one| *one == dimension)?;
+        Some(self.units[own])
     }
 }
 
@@ -48,129 +63,115 @@ pub trait PhysicalQuantity {
     const NAME: &'static str;
 
     /// The accepted kinds: one, or two where a joint decides.
-    fn kinds() -> Vec<Kind>;
+    fn kinds() -> &'static [Kind];
 }
 
-/// Declares measures by the dimension of uom, powers of the radian, name and example.
+/// Declares measures: of one kind by its units in the International System, name and example, or of several kinds.
 macro_rules! measures {
-    ($($(#[$doc:meta])* $measure:ident: $dimension:ty, $radians:expr, $name:literal, $example:literal;)*) => {
+    ($($(#[$doc:meta])* $measure:ident: $units:expr, $name:literal, $example:literal;)*) => {
         $(
-            $(#[$doc])*
-            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-            pub struct $measure;
-
             impl $measure {
                 /// The one kind of this measure.
                 pub fn kind() -> Kind {
-                    let dimension = Dimension::of::<$dimension>();
-                    let dimensions = $radians.into_iter().map(|radian| dimension.radians(radian)).collect();
-                    Kind { name: $name, example: $example, dimensions }
-                }
-            }
-
-            impl PhysicalQuantity for $measure {
-                const NAME: &'static str = stringify!($measure);
-
-                fn kinds() -> Vec<Kind> {
-                    vec![Self::kind()]
+                    Self::kinds()[0].clone()
                 }
             }
         )*
 
+        measures! { $($(#[$doc])* $measure = vec![Kind::new($name, $example, &$units)];)* }
+
         /// Every kind that has a name.
-        fn named_kinds() -> Vec<Kind> {
-            vec![$($measure::kind()),*]
+        fn named_kinds() -> impl Iterator<Item = &'static Kind> {
+            [$($measure::kinds()),*].into_iter().flatten()
         }
     };
+    ($($(#[$doc:meta])* $measure:ident: $($kind:ident)|+;)*) => {
+        measures! { $($(#[$doc])* $measure = [$($kind::kinds()),+].concat();)* }
+    };
+    ($($(#[$doc:meta])* $measure:ident = $kinds:expr;)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub struct $measure;
+
+        impl PhysicalQuantity for $measure {
+            const NAME: &'static str = stringify!($measure);
+
+            fn kinds() -> &'static [Kind] {
+                static KINDS: LazyLock<Vec<Kind>> = LazyLock::new(|| $kinds);
+                &KINDS
+            }
+        }
+    )*};
 }
 
 measures! {
     /// Length: m, mm inside.
-    Length: si::length::Dimension, [0], "a length", "\"50 mm\"";
+    Length: ["m"], "a length", "\"50 mm\"";
     /// Mass: kg, g inside.
-    Mass: si::mass::Dimension, [0], "a mass", "\"30 g\"";
+    Mass: ["kg"], "a mass", "\"30 g\"";
     /// Time: s, ms inside.
-    Time: si::time::Dimension, [0], "a time", "\"10 ms\"";
+    Time: ["s"], "a time", "\"10 ms\"";
     /// Voltage: V.
-    Voltage: si::electric_potential::Dimension, [0], "a voltage", "\"1.7 kV\"";
+    Voltage: ["V"], "a voltage", "\"1.7 kV\"";
     /// Angle: rad.
-    Angle: si::angle::Dimension, [1], "an angle", "\"0.3 rad\" or \"17 deg\"";
+    Angle: ["rad"], "an angle", "\"0.3 rad\" or \"17 deg\"";
     /// Stress or elastic modulus: Pa, MPa inside.
-    Stress: si::pressure::Dimension, [0], "a stress", "\"100 kPa\"";
+    Stress: ["Pa"], "a stress", "\"100 kPa\"";
     /// Density: kg/m³, g/mm³ inside.
-    Density: si::mass_density::Dimension, [0], "a density", "\"1000 kg/m^3\"";
+    Density: ["kg/m^3"], "a density", "\"1000 kg/m^3\"";
     /// Viscosity: Pa s, MPa ms inside.
-    Viscosity: si::dynamic_viscosity::Dimension, [0], "a viscosity", "\"1000 Pa s\"";
+    Viscosity: ["Pa s"], "a viscosity", "\"1000 Pa s\"";
     /// Permittivity: F/m, N/V² inside.
-    Permittivity: si::electric_permittivity::Dimension, [0], "a permittivity", "\"8.854e-12 F/m\"";
+    Permittivity: ["F/m"], "a permittivity", "\"8.854e-12 F/m\"";
     /// Electric field: V/m, V/mm inside.
-    ElectricField: si::electric_field::Dimension, [0], "an electric field", "\"80 V/um\"";
+    ElectricField: ["V/m"], "an electric field", "\"80 V/um\"";
     /// Acceleration: m/s², mm/ms² inside.
-    Acceleration: si::acceleration::Dimension, [0], "an acceleration", "\"9.81 m/s^2\"";
+    Acceleration: ["m/s^2"], "an acceleration", "\"9.81 m/s^2\"";
     /// Velocity: m/s, mm/ms inside.
-    Velocity: si::velocity::Dimension, [0], "a velocity", "\"0.2 m/s\"";
+    Velocity: ["m/s"], "a velocity", "\"0.2 m/s\"";
     /// Angular velocity: rad/s, rad/ms inside.
-    AngularVelocity: si::angular_velocity::Dimension, [1], "an angular velocity", "\"2 rad/s\"";
+    AngularVelocity: ["rad/s"], "an angular velocity", "\"2 rad/s\"";
     /// Rate of a stretch: 1/s, 1/ms inside.
-    Rate: si::frequency::Dimension, [0], "a rate", "\"25 1/s\"";
+    Rate: ["1/s"], "a rate", "\"25 1/s\"";
     /// Moment of inertia: kg m², g mm² inside.
-    MomentOfInertia: si::moment_of_inertia::Dimension, [0], "a moment of inertia", "\"9.25e-6 kg m^2\"";
+    MomentOfInertia: ["kg m^2"], "a moment of inertia", "\"9.25e-6 kg m^2\"";
     /// Damping of a rotation: N m s/rad, N mm ms inside.
-    RotationalDamping: si::angular_momentum::Dimension, [0, -1], "a rotational damping", "\"1e-4 N m s/rad\"";
+    RotationalDamping: ["N m s", "N m s/rad"], "a rotational damping", "\"1e-4 N m s/rad\"";
     /// Stiffness of a rotation: N m/rad, N mm/rad inside.
-    RotationalStiffness: si::energy::Dimension, [0, -1], "a rotational stiffness", "\"0.2 N m/rad\"";
+    RotationalStiffness: ["N m", "N m/rad"], "a rotational stiffness", "\"0.2 N m/rad\"";
     /// Damping of a translation: N s/m, N ms/mm inside.
-    Damping: si::mass_rate::Dimension, [0], "a damping", "\"0.5 N s/m\"";
+    Damping: ["N s/m"], "a damping", "\"0.5 N s/m\"";
     /// Stiffness of a spring: N/m, N/mm inside.
-    Stiffness: si::surface_tension::Dimension, [0], "a stiffness", "\"200 N/m\"";
+    Stiffness: ["N/m"], "a stiffness", "\"200 N/m\"";
     /// Ratio: a plain number.
-    Ratio: si::ratio::Dimension, [0], "a plain number", "3.2";
+    Ratio: [""], "a plain number", "3.2";
     /// Force: N.
-    Force: si::force::Dimension, [0], "a force", "\"1 N\"";
+    Force: ["N"], "a force", "\"1 N\"";
     /// Volume: m³, mm³ inside.
-    Volume: si::volume::Dimension, [0], "a volume", "\"48 cm^3\"";
+    Volume: ["m^3"], "a volume", "\"48 cm^3\"";
     /// Area, for messages.
-    Area: si::area::Dimension, [0], "an area", "\"1 mm^2\"";
+    Area: ["m^2"], "an area", "\"1 mm^2\"";
     /// Energy, for messages.
-    Energy: si::energy::Dimension, [0], "an energy", "\"1 mJ\"";
+    Energy: ["N m"], "an energy", "\"1 mJ\"";
     /// Torque: N m, N mm inside.
-    Torque: si::energy::Dimension, [0], "a torque", "\"0.2 N m\"";
+    Torque: ["N m"], "a torque", "\"0.2 N m\"";
     /// Force for a volume: N/m³, N/mm³ inside.
-    ForceDensity: Weight, [0], "a force for a volume", "\"10 kN/m^3\"";
+    ForceDensity: ["N/m^3"], "a force for a volume", "\"10 kN/m^3\"";
     /// Charge for an area: C/m², mC/mm² inside.
-    ChargeDensity: si::electric_charge_areal_density::Dimension, [0], "a charge for an area", "\"0.2 mC/m^2\"";
+    ChargeDensity: ["C/m^2"], "a charge for an area", "\"0.2 mC/m^2\"";
     /// Charge: C, mC inside.
-    Charge: si::electric_charge::Dimension, [0], "a charge", "\"0.5 uC\"";
+    Charge: ["C"], "a charge", "\"0.5 uC\"";
     /// Electric current: A.
-    Current: si::electric_current::Dimension, [0], "a current", "\"1 mA\"";
+    Current: ["A"], "a current", "\"1 mA\"";
     /// Power: W.
-    Power: si::power::Dimension, [0], "a power", "\"0.5 W\"";
+    Power: ["W"], "a power", "\"0.5 W\"";
     /// Rate of a voltage: V/s, V/ms inside.
-    VoltageRate: VoltageRateDimension, [0], "a rate of a voltage", "\"10 kV/s\"";
+    VoltageRate: ["V/s"], "a rate of a voltage", "\"10 kV/s\"";
     /// Electrical resistance: Ω.
-    Resistance: si::electrical_resistance::Dimension, [0], "a resistance", "\"10 MOhm\"";
+    Resistance: ["Ohm"], "a resistance", "\"10 MOhm\"";
 }
 
-/// Declares measures of several kinds; of joints an angular and a linear one.
-macro_rules! either_measures {
-    ($($(#[$doc:meta])* $measure:ident: $($kind:ident)|+;)*) => {
-        $(
-            $(#[$doc])*
-            #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-            pub struct $measure;
-
-            impl PhysicalQuantity for $measure {
-                const NAME: &'static str = stringify!($measure);
-
-                fn kinds() -> Vec<Kind> {
-                    vec![$($kind::kind()),+]
-                }
-            }
-        )*
-    };
-}
-
-either_measures! {
+measures! {
     /// Joint coordinate: an angle, or a length of a prismatic joint.
     JointCoordinate: Angle | Length;
     /// Rate of a joint coordinate: an angular velocity, or a velocity of a prismatic joint.
@@ -185,16 +186,9 @@ either_measures! {
     MeasuredSize: Length | Angle | Velocity | AngularVelocity | Force | Torque | Charge | Current | Power | Voltage;
 }
 
-/// A constant that an optimisation seeks, of the kind of its place in the scene.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct SoughtConstant;
-
-impl PhysicalQuantity for SoughtConstant {
-    const NAME: &'static str = "SoughtConstant";
-
-    fn kinds() -> Vec<Kind> {
-        named_kinds()
-    }
+measures! {
+    /// A constant that an optimisation seeks, of the kind of its place in the scene.
+    SoughtConstant = named_kinds().cloned().collect();
 }
 
 /// A finite quantity of one of the kinds of a [`PhysicalQuantity`].
@@ -348,7 +342,6 @@ impl<M: PhysicalQuantity> JsonSchema for Quantity<M> {
 /// Describes a quantity of this dimension in words.
 pub(crate) fn describe(dimension: Dimension) -> String {
     named_kinds()
-        .into_iter()
         .find(|kind| kind.is_in(dimension))
         .map_or_else(
             || match dimension.to_string() {
@@ -359,8 +352,17 @@ pub(crate) fn describe(dimension: Dimension) -> String {
         )
 }
 
-/// Of a force for a volume.
-pub(super) type Weight = ISQ<N2, P1, N2, Z0, Z0, Z0, Z0>;
-
-/// Of the rate of a voltage.
-type VoltageRateDimension = ISQ<P2, P1, N4, N1, Z0, Z0, Z0>;
+/// Value and unit in the International System of a text such as `80 kPa`; none where it is no number with a unit.
+pub(crate) fn si(text: &str) -> Option<(f64, String)> {
+    let (
+        number,
+        Unit {
+            factor,
+            exponent,
+            dimension,
+        },
+    ) = parts(text).ok()?;
+    let symbol = named_kinds().find_map(|kind| kind.symbol_of(dimension));
+    let symbol = symbol.map_or_else(|| dimension.to_string(), str::to_owned);
+    Some((scale(number * factor, exponent), symbol))
+}

@@ -1,59 +1,40 @@
-//! Units as text: prefix × unit × power, joined by products and quotients, over the dimensions of uom.
+//! Units as text: prefix × unit × power, joined by products and quotients.
 //!
 //! A quantity is written as a number, or as a text of a number with a unit.
 
+use std::f64::consts::PI;
 use std::fmt;
-use uom::typenum::Integer;
-use uom::{Conversion, si};
 
-/// Exponents of length, mass, time, current, temperature, amount and luminous intensity, then of the radian.
+/// Symbols of the units whose powers make a dimension.
+const BASE: [&str; 6] = ["m", "kg", "s", "A", "K", "rad"];
+
+/// Exponents of length, mass, time, current, temperature and the radian.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Dimension {
-    si: [i32; 7],
-    radian: i32,
-}
+pub(crate) struct Dimension([i32; BASE.len()]);
 
 impl Dimension {
-    /// The dimension of a quantity of uom.
-    pub(crate) fn of<D: si::Dimension + ?Sized>() -> Self {
-        let si = [
-            D::L::to_i32(),
-            D::M::to_i32(),
-            D::T::to_i32(),
-            D::I::to_i32(),
-            D::Th::to_i32(),
-            D::N::to_i32(),
-            D::J::to_i32(),
-        ];
-        Self { si, radian: 0 }
-    }
-
-    /// The same with a power of the radian.
-    pub(crate) fn radians(self, radian: i32) -> Self {
-        Self { radian, ..self }
-    }
-
     /// Decimal exponent from SI to g, mm, ms, A (so that V, N, MPa and mJ come out coherent).
     pub(crate) fn internal_exponent(self) -> i32 {
-        3 * (self.si[0] + self.si[1] + self.si[2])
+        3 * (self.0[0] + self.0[1] + self.0[2])
+    }
+
+    fn has_radian(self) -> bool {
+        self.0[5] != 0
     }
 
     fn times(mut self, other: Self, power: i32) -> Option<Self> {
-        for (own, term) in self.si.iter_mut().zip(other.si) {
+        for (own, term) in self.0.iter_mut().zip(other.0) {
             *own = own.checked_add(term.checked_mul(power)?)?;
         }
-        self.radian = self.radian.checked_add(other.radian.checked_mul(power)?)?;
         Some(self)
     }
 }
 
 impl fmt::Display for Dimension {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let symbols = ["m", "kg", "s", "A", "K", "mol", "cd", "rad"];
-        let exponents = self.si.into_iter().chain([self.radian]);
-        let terms: Vec<String> = symbols
+        let terms: Vec<String> = BASE
             .into_iter()
-            .zip(exponents)
+            .zip(self.0)
             .filter(|&(_, exponent)| exponent != 0)
             .map(|(symbol, exponent)| match exponent {
                 1 => symbol.to_owned(),
@@ -83,23 +64,8 @@ impl Unit {
     pub(crate) const ONE: Self = Self {
         factor: 1.0,
         exponent: 0,
-        dimension: Dimension {
-            si: [0; 7],
-            radian: 0,
-        },
+        dimension: Dimension([0; BASE.len()]),
     };
-
-    /// A unit of uom.
-    fn of<D: si::Dimension + ?Sized, U: Conversion<f64, T = f64>>() -> Self {
-        let coefficient = U::coefficient();
-        let exponent = coefficient.log10().round() as i32;
-        let decimal = scale(1.0, exponent) == coefficient;
-        Self {
-            factor: if decimal { 1.0 } else { coefficient },
-            exponent: if decimal { exponent } else { 0 },
-            dimension: Dimension::of::<D>(),
-        }
-    }
 
     fn times(self, other: Self, power: i32) -> Option<Self> {
         let exponent = self
@@ -141,7 +107,7 @@ impl Unit {
         }
         PREFIXES.iter().find_map(|&(prefix, exponent)| {
             let unit = named(symbol.strip_prefix(prefix)?)?;
-            let prefixable = unit.factor == 1.0 && unit.dimension.radian == 0;
+            let prefixable = unit.factor == 1.0 && !unit.dimension.has_radian();
             prefixable.then_some(Self {
                 exponent: unit.exponent + exponent,
                 ..unit
@@ -177,37 +143,36 @@ const PREFIXES: [(&str, i32); 14] = [
     ("p", -12),
 ];
 
-/// Units that have a name of their own.
+/// Units that have a name of their own: exponents of their dimension, factor and power of ten.
+const NAMED: [(&str, [i32; BASE.len()], f64, i32); 20] = [
+    ("m", [1, 0, 0, 0, 0, 0], 1.0, 0),
+    ("g", [0, 1, 0, 0, 0, 0], 1.0, -3),
+    ("t", [0, 1, 0, 0, 0, 0], 1.0, 3),
+    ("s", [0, 0, 1, 0, 0, 0], 1.0, 0),
+    ("min", [0, 0, 1, 0, 0, 0], 60.0, 0),
+    ("A", [0, 0, 0, 1, 0, 0], 1.0, 0),
+    ("K", [0, 0, 0, 0, 1, 0], 1.0, 0),
+    ("N", [1, 1, -2, 0, 0, 0], 1.0, 0),
+    ("Pa", [-1, 1, -2, 0, 0, 0], 1.0, 0),
+    ("bar", [-1, 1, -2, 0, 0, 0], 1.0, 5),
+    ("J", [2, 1, -2, 0, 0, 0], 1.0, 0),
+    ("W", [2, 1, -3, 0, 0, 0], 1.0, 0),
+    ("C", [0, 0, 1, 1, 0, 0], 1.0, 0),
+    ("V", [2, 1, -3, -1, 0, 0], 1.0, 0),
+    ("Ohm", [2, 1, -3, -2, 0, 0], 1.0, 0),
+    ("Ω", [2, 1, -3, -2, 0, 0], 1.0, 0),
+    ("F", [-2, -1, 4, 2, 0, 0], 1.0, 0),
+    ("rad", [0, 0, 0, 0, 0, 1], 1.0, 0),
+    ("deg", [0, 0, 0, 0, 0, 1], PI / 180.0, 0),
+    ("°", [0, 0, 0, 0, 0, 1], PI / 180.0, 0),
+];
+
 fn named(symbol: &str) -> Option<Unit> {
-    let radian = |unit: Unit| Unit {
-        dimension: unit.dimension.radians(1),
-        ..unit
-    };
-    Some(match symbol {
-        "m" => Unit::of::<si::length::Dimension, si::length::meter>(),
-        "g" => Unit::of::<si::mass::Dimension, si::mass::gram>(),
-        "t" => Unit::of::<si::mass::Dimension, si::mass::ton>(),
-        "s" => Unit::of::<si::time::Dimension, si::time::second>(),
-        "min" => Unit::of::<si::time::Dimension, si::time::minute>(),
-        "A" => Unit::of::<si::electric_current::Dimension, si::electric_current::ampere>(),
-        "K" => Unit::of::<
-            si::thermodynamic_temperature::Dimension,
-            si::thermodynamic_temperature::kelvin,
-        >(),
-        "N" => Unit::of::<si::force::Dimension, si::force::newton>(),
-        "Pa" => Unit::of::<si::pressure::Dimension, si::pressure::pascal>(),
-        "bar" => Unit::of::<si::pressure::Dimension, si::pressure::bar>(),
-        "J" => Unit::of::<si::energy::Dimension, si::energy::joule>(),
-        "W" => Unit::of::<si::power::Dimension, si::power::watt>(),
-        "C" => Unit::of::<si::electric_charge::Dimension, si::electric_charge::coulomb>(),
-        "V" => Unit::of::<si::electric_potential::Dimension, si::electric_potential::volt>(),
-        "Ohm" | "Ω" => {
-            Unit::of::<si::electrical_resistance::Dimension, si::electrical_resistance::ohm>()
-        }
-        "F" => Unit::of::<si::capacitance::Dimension, si::capacitance::farad>(),
-        "rad" => radian(Unit::of::<si::angle::Dimension, si::angle::radian>()),
-        "deg" | "°" => radian(Unit::of::<si::angle::Dimension, si::angle::degree>()),
-        _ => return None,
+    let (_, dimension, factor, exponent) = NAMED.into_iter().find(|one| one.0 == symbol)?;
+    Some(Unit {
+        factor,
+        exponent,
+        dimension: Dimension(dimension),
     })
 }
 
@@ -316,47 +281,4 @@ fn split_number(text: &str) -> (&str, &str) {
         }
     }
     text.split_at(end)
-}
-
-/// Symbols of units of the International System, by which quantities are written in tables.
-const SYMBOLS: [&str; 25] = [
-    "m",
-    "kg",
-    "s",
-    "V",
-    "rad",
-    "Pa",
-    "kg/m^3",
-    "Pa s",
-    "F/m",
-    "V/m",
-    "m/s^2",
-    "m/s",
-    "rad/s",
-    "1/s",
-    "kg m^2",
-    "N m s/rad",
-    "N s/m",
-    "N/m",
-    "N",
-    "m^2",
-    "N m",
-    "N/m^3",
-    "C",
-    "C/m^2",
-    "A",
-];
-
-/// Symbol of the unit of a dimension in the International System.
-pub(super) fn symbol(dimension: Dimension) -> String {
-    let named = |symbol: &&&str| Unit::parse(symbol).is_some_and(|one| one.dimension == dimension);
-    let symbol = SYMBOLS.iter().find(named);
-    symbol.map_or_else(|| dimension.to_string(), |symbol| (*symbol).to_owned())
-}
-
-/// Value and unit in the International System of a text such as `80 kPa`; none where it is no number with a unit.
-pub(crate) fn si(text: &str) -> Option<(f64, String)> {
-    let (number, unit) = parts(text).ok()?;
-    let value = scale(number * unit.factor, unit.exponent);
-    Some((value, symbol(unit.dimension)))
 }
