@@ -41,17 +41,14 @@ mod summary;
 mod task;
 mod templates;
 
-pub(crate) use batch::{Batch, RunEnd, Said, check_run_in, run_all, task_runs_at_once};
+pub(crate) use batch::{Batch, Ended, check_run_in, run_all, task_runs_at_once};
 pub use batch::{RunIn, end_with_parent};
 pub use equilibrium::equilibrium_of_file;
 pub use error::CommandError;
 pub use inspect::{Inspected, inspect, inspected};
-pub(crate) use kept::cache::Identity;
 pub use kept::cache::run_once;
+pub(crate) use kept::cache::{Found, found, identity, identity_of_words};
 pub(crate) use kept::overwrite_check::{make_folder, without_dots};
-pub(crate) use kept::record::{
-    FileRecords, FolderRecord, Found, OF_VARIANT, WrittenSummary, is_unfinished,
-};
 pub use motions::compare;
 pub use multistart::{solve_from_starts, solve_text_from_starts};
 pub use program::{

@@ -34,6 +34,8 @@ pub struct CommandInput {
     pub progress: ProgressDisplay,
     /// Writing of `report.html`.
     pub page: PageWanted,
+    /// True if a result that is whole is not made again, where the run is one of a batch.
+    pub once: bool,
 }
 
 /// Writing of a page.

@@ -1,29 +1,27 @@
 //! Variants of one problem, solved in parallel, each in a folder of its own; variants that are solved already are not solved again.
 //!
 //! - `read`: the sweep file and its variants.
-//! - `variant_record`: record of a variant; `table`: all of them together, and their page.
+//! - `variant_end`: end of a variant; `table`: all of them together, and their page.
 
 mod read;
 mod table;
-mod variant_record;
+mod variant_end;
 
 use crate::app::{
-    Batch, CommandError, CommandInput, CommandOutput, FolderRecord, Found, ProgressDisplay, RunEnd,
-    RunIn, check_run_in, make_folder, run_all,
+    Batch, CommandError, CommandInput, CommandOutput, Ended, Found, ProgressDisplay, RunIn,
+    check_run_in, found, make_folder, run_all,
 };
 use crate::report::atomic;
 use crate::report::origin::Origin;
 use crate::report::table::cells_csv;
 use crate::stop;
 use crate::sweep::read::{Sweep, Variant, read_sweep};
-use crate::sweep::variant_record::VariantRecord;
+use crate::sweep::variant_end::VariantEnd;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 use std::time::Instant;
 
-/// Folder of the variants within that of the results.
-const VARIANTS: &str = "variants";
 /// Most notes of one kind.
 const NOTES: usize = 10;
 
@@ -37,40 +35,31 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
     check_run_in(request.run_in)?;
     let folder = request.folder();
     make_folder(&folder)?;
-    let of = |variant: &Variant| folder.join(VARIANTS).join(variant.identity.as_str());
 
     // By identity, so that equal variants are solved once.
-    let mut ends: BTreeMap<&str, VariantRecord> = BTreeMap::new();
+    let mut ends: BTreeMap<&str, VariantEnd> = BTreeMap::new();
     let mut todo: Vec<&Variant> = Vec::new();
-    let mut chosen = BTreeSet::new();
     let mut before = Before::default();
     for (index, variant) in sweep.variants.iter().enumerate() {
         let identity = variant.identity.as_str();
-        if !chosen.insert(identity) {
+        if ends.contains_key(identity) {
             continue;
         }
         let kept = match &variant.refused {
-            Some(message) => Some(VariantRecord::refused(variant, message)),
-            None => before.of(variant, &of(variant)),
+            Some(message) => Some(VariantEnd::without_results("refused", message)),
+            None => before.of(variant, &variant.folder(&folder)),
         };
-        match kept {
-            Some(kept) => {
-                ends.insert(identity, kept);
-            }
-            None if request.shard.has(index) => todo.push(variant),
-            None => {}
+        if kept.is_none() && request.shard.has(index) {
+            todo.push(variant);
         }
+        // What is to be solved has not started yet.
+        let end = kept.unwrap_or_else(|| VariantEnd::without_results("not_started", ""));
+        ends.insert(identity, end);
     }
-    solve(request, &sweep, &todo, &of, began, &mut ends)?;
+    solve(request, &sweep, &todo, began, &mut ends)?;
 
-    let ends: Vec<VariantRecord> = sweep
-        .variants
-        .iter()
-        .map(|variant| match ends.get(variant.identity.as_str()) {
-            Some(end) => end.clone(),
-            None => VariantRecord::from_end(variant, &RunEnd::NOT_STARTED, Path::new("")),
-        })
-        .collect();
+    let identities = sweep.variants.iter().map(|one| one.identity.as_str());
+    let ends: Vec<&VariantEnd> = identities.map(|identity| &ends[identity]).collect();
     write(request, &sweep, &ends, &folder)?;
     Ok(command_output(
         request.shard,
@@ -82,7 +71,7 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
     ))
 }
 
-/// Records that the folders of the variants held before.
+/// Results that the folders of the variants held before.
 #[derive(Default)]
 struct Before {
     /// Variants that were whole.
@@ -93,14 +82,14 @@ struct Before {
 
 impl Before {
     /// The end of a variant, where its folder holds all of it.
-    fn of(&mut self, variant: &Variant, folder: &Path) -> Option<VariantRecord> {
-        match VariantRecord::found(folder, variant.identity.as_str()) {
-            Found::Whole(kept) => {
+    fn of(&mut self, variant: &Variant, folder: &Path) -> Option<VariantEnd> {
+        let name = &variant.identity;
+        match found(folder, name) {
+            Found::Whole(record) => {
                 self.found += 1;
-                Some(kept)
+                Ended::of_folder(folder, record.is_solved).map(VariantEnd::new)
             }
             Found::Deviates(words) => {
-                let name = variant.identity.as_str();
                 self.deviations
                     .push(format!("variant {name} does not count as solved: {words}"));
                 None
@@ -110,23 +99,23 @@ impl Before {
     }
 }
 
-/// Solves variants, and keeps each as soon as it has ended.
+/// Solves variants, each as a run that is made once.
 fn solve<'a>(
     request: &SweepRequest,
     sweep: &'a Sweep,
     todo: &[&'a Variant],
-    folder: &dyn Fn(&Variant) -> PathBuf,
     began: Instant,
-    ends: &mut BTreeMap<&'a str, VariantRecord>,
+    ends: &mut BTreeMap<&'a str, VariantEnd>,
 ) -> Result<(), CommandError> {
+    let results = request.folder();
     let run = |variant: &&Variant| CommandInput {
         input: sweep.problem.clone(),
         set: variant.set.clone(),
-        output: Some(folder(variant)),
+        output: Some(variant.folder(&results)),
         progress: request.progress,
+        once: true,
         ..CommandInput::default()
     };
-    let results = request.folder();
     let runs: Vec<CommandInput> = todo.iter().map(run).collect();
     let batch = Batch {
         runs: &runs,
@@ -136,16 +125,9 @@ fn solve<'a>(
         max_seconds: request.max_seconds,
         began,
     };
-    run_all(&batch, "variant", request.progress, &mut |index, end| {
-        let (variant, folder) = (todo[index], folder(todo[index]));
-        let mut kept = VariantRecord::from_end(variant, &end, &folder);
-        if !kept.is_unfinished() {
-            make_folder(&folder)?;
-            kept.write(&folder)?;
-        }
-        let is_solved = kept.is_solved;
-        ends.insert(variant.identity.as_str(), kept);
-        Ok((is_solved, None))
+    run_all(&batch, "variant", request.progress, &mut |index, ended| {
+        ends.insert(todo[index].identity.as_str(), VariantEnd::new(ended));
+        Ok(None)
     })
 }
 
@@ -153,7 +135,7 @@ fn solve<'a>(
 fn write(
     request: &SweepRequest,
     sweep: &Sweep,
-    ends: &[VariantRecord],
+    ends: &[&VariantEnd],
     folder: &Path,
 ) -> Result<(), CommandError> {
     let origin = Origin::new(&request.command, &request.input, true);
@@ -168,22 +150,22 @@ fn write(
 fn command_output(
     shard: Shard,
     sweep: &Sweep,
-    ends: &[VariantRecord],
+    ends: &[&VariantEnd],
     before: Before,
     folder: &Path,
     began: Instant,
 ) -> CommandOutput {
-    let solved = ends.iter().filter(|end| end.is_solved).count();
+    let solved = ends.iter().filter(|end| end.ended.is_solved).count();
     let mut words: BTreeMap<&str, usize> = BTreeMap::new();
     for end in ends {
-        *words.entry(&end.status).or_default() += 1;
+        *words.entry(&end.ended.summary.status).or_default() += 1;
     }
     let words = words.iter().map(|(word, count)| format!("{count} {word}"));
     let words: Vec<String> = words.collect();
     let mut messages = BTreeSet::new();
     let mut first_messages = Vec::new();
     for (variant, end) in sweep.variants.iter().zip(ends) {
-        let message = end.message.as_ref();
+        let message = end.ended.message.as_ref();
         if let Some(message) = message.filter(|message| messages.insert(message.as_str())) {
             first_messages.push(format!("{}: {message}", variant.set.join(", ")));
         }
@@ -192,7 +174,7 @@ fn command_output(
     notes.extend(first(first_messages));
     let own = ends.iter().enumerate();
     let mut own = own.filter(|(index, _)| shard.has(*index));
-    let is_complete = own.all(|(_, end)| !end.is_unfinished());
+    let is_complete = own.all(|(_, end)| !end.ended.summary.is_unfinished());
     if stop::requested() {
         notes.push("interrupted; the same command goes on".to_owned());
     }

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use crate::app::{Identity, task_runs_at_once};
+use crate::app::{CommandInput, identity, identity_of_words, task_runs_at_once};
 use crate::files::changes::Changes;
 use crate::files::sweep::{CombineSpec, RangeSpec, SpacingSpec, SweepSpec, VarySpec};
 use crate::files::{
@@ -37,9 +37,16 @@ pub(super) struct Variant {
     /// All overrides, as they are typed after `--set`.
     pub(super) set: Vec<String>,
     /// Of the problem that it asks for; of the overrides where that is refused.
-    pub(super) identity: Identity,
+    pub(super) identity: String,
     /// Reason why its problem is refused.
     pub(super) refused: Option<String>,
+}
+
+impl Variant {
+    /// Its folder within that of the results.
+    pub(super) fn folder(&self, results: &Path) -> PathBuf {
+        results.join("variants").join(&self.identity)
+    }
 }
 
 fn is_refused(variant: &Variant) -> bool {
@@ -92,12 +99,12 @@ pub(super) fn read_sweep(path: &Path) -> Result<Sweep, SceneError> {
                     found.map_err(|error| changes.at_fault(error, &problem))?;
                 }
                 run_at_once &= task_runs_at_once(&loaded.task);
-                (Identity::of_problem(&loaded), None)
+                (identity(&loaded, &CommandInput::default()), None)
             }
             Err(error) => {
                 let told = error.to_string();
                 first_error.get_or_insert_with(|| changes.at_fault(error, &problem));
-                (Identity::of_words(&changes.words), Some(told))
+                (identity_of_words(&changes.words), Some(told))
             }
         };
         variants.push(Variant {

@@ -4,11 +4,11 @@ use crate::files::si;
 use crate::report::origin::Origin;
 use crate::report::page::framed;
 use crate::sweep::read::{Sweep, Variant};
-use crate::sweep::variant_record::{END, VariantRecord};
+use crate::sweep::variant_end::{END, VariantEnd};
 use serde_json::{Value, json};
 
 /// Headings and rows of cells; a cell without a value is empty.
-pub(super) fn table(sweep: &Sweep, ends: &[VariantRecord]) -> Vec<Vec<String>> {
+pub(super) fn table(sweep: &Sweep, ends: &[&VariantEnd]) -> Vec<Vec<String>> {
     let mut names: Vec<&String> = Vec::new();
     for name in ends.iter().flat_map(|end| end.numbers.keys()) {
         if !names.contains(&name) {
@@ -25,9 +25,9 @@ pub(super) fn table(sweep: &Sweep, ends: &[VariantRecord]) -> Vec<Vec<String>> {
     let head = head.chain(names.iter().map(|&name| name.clone())).collect();
     let rows = ends.iter().enumerate().map(|(row, end)| {
         let fixed = [
-            end.identity.clone(),
-            end.status.clone(),
-            format!("{:?}", end.seconds),
+            sweep.variants[row].identity.clone(),
+            end.ended.summary.status.clone(),
+            format!("{:?}", end.ended.summary.seconds.total),
         ];
         let values = columns.iter().map(|column| column.cells[row].clone());
         let numbers = names.iter().map(|&name| end.numbers.get(name));
@@ -93,11 +93,11 @@ const MODULE: &str = include_str!("page.js");
 /// The page; `table` has a row of headings first.
 pub(super) fn html(
     sweep: &Sweep,
-    ends: &[VariantRecord],
+    ends: &[&VariantEnd],
     table: &[Vec<String>],
     origin: &Origin,
 ) -> String {
-    let solved: Vec<bool> = ends.iter().map(|end| end.is_solved).collect();
+    let solved: Vec<bool> = ends.iter().map(|end| end.ended.is_solved).collect();
     let count = solved.iter().filter(|&&is_solved| is_solved).count();
     let problem = sweep.problem.display();
     let data = json!({

@@ -116,7 +116,7 @@ fn tasks_of_a_server_are_collected() {
         let variant = variant.unwrap();
         let other = folder.join("threads/variants").join(variant.file_name());
         let [own, other] = [variant.path(), other].map(|path| {
-            let seconds = read(path.join("variant.json"))["seconds"].as_f64();
+            let seconds = read(path.join("summary.json"))["seconds"]["total"].as_f64();
             assert!(seconds.unwrap() > 0.0);
             fs::read(path.join("solution.json")).unwrap()
         });

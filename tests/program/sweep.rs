@@ -152,8 +152,8 @@ fn machines_share_a_sweep() {
     let end = folder
         .join("results/sweeps/sweep/variants")
         .join(one)
-        .join("variant.json");
-    assert_eq!(read(&end)["status"], "solved");
+        .join("record.json");
+    assert_eq!(read(&end)["is_solved"], true);
     fs::remove_file(end).unwrap();
     let (status, out, _) = run(folder, &["sweep", "sweep.json"]);
     assert!(status == 0 && out.contains("5 solved, 1 found"), "{out}");
@@ -195,8 +195,8 @@ fn what_is_not_whole_is_solved_again() {
     *changed.last_mut().unwrap() = b' ';
     fs::write(variant.join("trajectory.csv"), &changed).unwrap();
     solved_again("trajectory.csv has been changed");
-    fs::write(variant.join("variant.json"), "{\"set\": [").unwrap();
-    solved_again("variant.json is not as it was written");
+    fs::write(variant.join("record.json"), "{\"set\": [").unwrap();
+    solved_again("record.json is not as it was written");
 }
 
 #[test]

@@ -5,7 +5,7 @@
 //! The program holds one end of a pipe, of which the other one is the standard input of the process. The operating system closes
 //! what a program held when it is gone, also after `kill -9`, and the process reads the end of its input. Nothing is sent.
 
-use crate::app::kept::record::WrittenSummary;
+use crate::app::kept::record::{WrittenSeconds, WrittenSummary};
 use crate::app::progress::ProgressDisplay;
 use crate::app::request::{CommandInput, PageWanted};
 use crate::control::problem::Task;
@@ -16,7 +16,7 @@ use crate::stop;
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fs::File;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::Instant;
 use std::{env, io, process, thread};
@@ -66,6 +66,9 @@ pub(super) fn words(request: &CommandInput) -> Vec<OsString> {
     }
     if request.page == PageWanted::LeftOut {
         words.push("--no-report".into());
+    }
+    if request.once {
+        words.push("--once".into());
     }
     words.push("--quiet".into());
     words
@@ -197,9 +200,9 @@ pub(crate) fn task_runs_at_once(task: &Task) -> bool {
     options.run_at_once()
 }
 
-/// End of a solve.
+/// How a solve ended.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Said {
+pub(super) enum Said {
     /// There was no time for it.
     NotStarted,
     /// The question has an answer.
@@ -226,35 +229,73 @@ pub(super) fn of_status(status: Option<i32>, words: &str) -> Said {
 
 /// The end of a solve.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct RunEnd {
+pub(super) struct RunEnd {
     /// End, with the words of the solve.
-    pub(crate) said: Said,
+    pub(super) said: Said,
     /// Wall time in s.
-    pub(crate) seconds: f64,
+    pub(super) seconds: f64,
 }
 
 impl RunEnd {
     /// There was no time for it.
-    pub(crate) const NOT_STARTED: Self = Self {
+    pub(super) const NOT_STARTED: Self = Self {
         said: Said::NotStarted,
         seconds: 0.0,
     };
+}
 
-    /// The summary that it wrote into its folder, where it came so far.
-    pub(crate) fn summary(&self, folder: &Path) -> Option<WrittenSummary> {
-        let is_written = matches!(self.said, Said::Solved | Said::Unsolved(_));
-        is_written
-            .then(|| WrittenSummary::of_folder(folder))
-            .flatten()
+/// A solve that has ended, with what it left in its folder.
+#[derive(Debug)]
+pub(crate) struct Ended {
+    /// True if its question has an answer.
+    pub(crate) is_solved: bool,
+    /// Message where it left no summary.
+    pub(crate) message: Option<String>,
+    /// Its summary; where it left none, status and time alone: `not_started`, `refused`, `interrupted`, `failed`.
+    pub(crate) summary: WrittenSummary,
+    /// Folder of its results, where it left a summary.
+    pub(crate) folder: Option<PathBuf>,
+}
+
+impl Ended {
+    /// One that ended like this in a folder.
+    pub(super) fn new(end: RunEnd, folder: &Path) -> Self {
+        let is_written = matches!(end.said, Said::Solved | Said::Unsolved(_));
+        let written = is_written.then(|| Self::of_folder(folder, end.said == Said::Solved));
+        if let Some(written) = written.flatten() {
+            return written;
+        }
+        let (status, message) = match end.said {
+            Said::NotStarted => ("not_started", String::new()),
+            Said::Refused(words) => ("refused", words),
+            _ if stop::requested() => ("interrupted", String::new()),
+            Said::Solved => ("failed", String::new()),
+            Said::Unsolved(words) | Said::Failed(words) => ("failed", words),
+        };
+        Self::without_results(status, message, end.seconds)
     }
 
-    /// Its words, where there are some.
-    pub(crate) fn message(&self) -> Option<String> {
-        match &self.said {
-            Said::NotStarted | Said::Solved => None,
-            Said::Unsolved(words) | Said::Failed(words) | Said::Refused(words) => {
-                Some(words.clone()).filter(|words| !words.is_empty())
-            }
+    /// One that left a summary in a folder.
+    pub(crate) fn of_folder(folder: &Path, is_solved: bool) -> Option<Self> {
+        Some(Self {
+            is_solved,
+            message: None,
+            summary: WrittenSummary::of_folder(folder)?,
+            folder: Some(folder.to_owned()),
+        })
+    }
+
+    /// One that left nothing.
+    pub(crate) fn without_results(status: &str, message: String, seconds: f64) -> Self {
+        Self {
+            is_solved: false,
+            message: Some(message).filter(|words| !words.is_empty()),
+            summary: WrittenSummary {
+                status: status.to_owned(),
+                seconds: WrittenSeconds { total: seconds },
+                ..WrittenSummary::default()
+            },
+            folder: None,
         }
     }
 }

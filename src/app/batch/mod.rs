@@ -6,20 +6,22 @@ mod hyperqueue;
 mod launch;
 mod processes;
 
-pub(crate) use launch::{Batch, RunEnd, Said, task_runs_at_once};
+pub(crate) use launch::{Batch, Ended, task_runs_at_once};
 pub use launch::{RunIn, end_with_parent};
 
 use crate::app::error::CommandError;
+use crate::app::kept::cache::run_once;
 use crate::app::progress::{Progress, ProgressDisplay};
 use crate::app::request::CommandInput;
 use crate::app::task;
 use crate::workflow::parallel_map::{cores, parallel_map};
+use launch::{RunEnd, Said};
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Instant;
 
 /// Runs all of a batch with a line of progress, in which each is called `what`. `told` is called at each end, in the thread that calls; it returns
-/// whether the run is solved, and the best objective so far. Where it fails, no other run begins.
+/// the best objective so far. Where it fails, no other run begins.
 ///
 /// # Errors
 /// The first of `told`, or a process cannot be had.
@@ -27,20 +29,23 @@ pub(crate) fn run_all(
     batch: &Batch<'_>,
     what: &str,
     shown: ProgressDisplay,
-    told: &mut dyn FnMut(usize, RunEnd) -> Result<(bool, Option<f64>), CommandError>,
+    told: &mut dyn FnMut(usize, Ended) -> Result<Option<f64>, CommandError>,
 ) -> Result<(), CommandError> {
     let progress = Progress::of_runs(shown, what, batch.runs.len());
     let (mut ended, mut solved, mut failed) = (0, 0, None);
-    let told = &mut |index, end| match told(index, end) {
-        Ok((is_solved, best)) => {
-            ended += 1;
-            solved += usize::from(is_solved);
-            progress.run(ended, solved, best);
-            ControlFlow::Continue(())
-        }
-        Err(error) => {
-            failed.get_or_insert(error);
-            ControlFlow::Break(())
+    let told = &mut |index: usize, end| {
+        let one = Ended::new(end, &batch.runs[index].folder());
+        ended += 1;
+        solved += usize::from(one.is_solved);
+        match told(index, one) {
+            Ok(best) => {
+                progress.run(ended, solved, best);
+                ControlFlow::Continue(())
+            }
+            Err(error) => {
+                failed.get_or_insert(error);
+                ControlFlow::Break(())
+            }
         }
     };
     match batch.run_in {
@@ -76,7 +81,11 @@ fn run_in_threads(
             return RunEnd::NOT_STARTED;
         };
         let began = Instant::now();
-        let said = match task::run_observed(&command, batch.text, &mut |_| {}) {
+        let answer = match run.once {
+            true => run_once(&command),
+            false => task::run_observed(&command, batch.text, &mut |_| {}),
+        };
+        let said = match answer {
             Ok(output) if output.is_solved => Said::Solved,
             Ok(_) => Said::Unsolved(String::new()),
             Err(error) => said(&error),

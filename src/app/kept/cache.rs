@@ -1,27 +1,57 @@
 //! Skips a run whose complete result exists.
 
 use crate::app::error::CommandError;
-use crate::app::kept::record::{
-    FileRecords, FolderRecord, Found, OF_RUN, WrittenSummary, digest, digest_of,
-};
+use crate::app::kept::record::{FileRecords, WrittenSummary, digest, digest_of};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::{read, run};
 use crate::control::problem::{Control, Guess, Task};
-use crate::files::Loaded;
 use crate::files::solution::file_beside;
+use crate::files::{Loaded, lay_out};
+use crate::report::atomic::{self, WriteError};
 use crate::report::origin::Origin;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 use std::{fmt, fs};
 
-/// The answer of a run that has come to its end, with its files.
-#[derive(Debug, PartialEq, Serialize, Deserialize)]
-struct Record {
+/// The record of a run in the folder of its result.
+const NAME: &str = "record.json";
+
+/// The answer of a run that has come to its end, with its files as they were written.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Record {
     identity: String,
-    is_solved: bool,
+    pub(crate) is_solved: bool,
     result: String,
     notes: Vec<String>,
     files: FileRecords,
+}
+
+/// State of a result in a folder.
+#[derive(Debug)]
+pub(crate) enum Found {
+    /// All of it as it was written.
+    Whole(Record),
+    /// A file is not as it was written, in words.
+    Deviates(String),
+    /// Another result, or none.
+    Nothing,
+}
+
+/// The result of a run of this identity in a folder.
+pub(crate) fn found(folder: &Path, identity: &str) -> Found {
+    let Ok(text) = fs::read_to_string(folder.join(NAME)) else {
+        return Found::Nothing;
+    };
+    let Ok(record) = serde_json::from_str::<Record>(&text) else {
+        return Found::Deviates(format!("{NAME} is not as it was written"));
+    };
+    if record.identity != identity {
+        return Found::Nothing;
+    }
+    match record.files.deviation(folder) {
+        Some(words) => Found::Deviates(words),
+        None => Found::Whole(record),
+    }
 }
 
 /// Does what a problem file asks for, unless the folder of the results holds the answer already; a result of which a file is missing or
@@ -31,9 +61,9 @@ struct Record {
 /// As of [`run`].
 pub fn run_once(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     let loaded = read(&request.input, None, &request.set)?;
-    let identity = Identity::of_run(&loaded, request);
+    let identity = identity(&loaded, request);
     let folder = request.folder();
-    let deviation = match Record::found(&folder, identity.as_str()) {
+    let deviation = match found(&folder, &identity) {
         Found::Whole(record) => {
             return Ok(CommandOutput {
                 is_solved: record.is_solved,
@@ -44,91 +74,76 @@ pub fn run_once(request: &CommandInput) -> Result<CommandOutput, CommandError> {
         Found::Deviates(deviation) => Some(deviation),
         Found::Nothing => None,
     };
-    let mut output = run(request)?;
-    if WrittenSummary::of_folder(&folder).is_some_and(|summary| !summary.is_unfinished()) {
-        let mut record = Record {
-            identity: identity.as_str().to_owned(),
-            is_solved: output.is_solved,
-            result: output.result.clone(),
-            notes: output.notes.clone(),
-            files: FileRecords::default(),
+    // That there is no answer is one.
+    let answer = run(request).or_else(|error| {
+        let status = error.unanswered().map(|word| word.replace('_', " "));
+        let notes = vec![error.to_string()];
+        let output = |result| CommandOutput {
+            is_solved: false,
+            result,
+            notes,
         };
-        record.write(&folder)?;
+        status.map(output).ok_or(error)
+    });
+    let mut output = answer?;
+    if WrittenSummary::of_folder(&folder).is_some_and(|summary| !summary.is_unfinished()) {
+        write(&folder, identity, &output)?;
     }
     let again = deviation.map(|words| format!("made again: {words}"));
     output.notes.splice(0..0, again);
     Ok(output)
 }
 
-impl FolderRecord for Record {
-    const NAME: &'static str = OF_RUN;
-
-    fn identity(&self) -> &str {
-        &self.identity
-    }
-
-    fn files(&mut self) -> &mut FileRecords {
-        &mut self.files
-    }
+/// Writes the record of a run, with the hashes of the files that the folder has now.
+fn write(folder: &Path, identity: String, output: &CommandOutput) -> Result<(), WriteError> {
+    let path = folder.join(NAME);
+    let files = FileRecords::from_folder(folder, NAME).map_err(WriteError::at(&path))?;
+    let record = Record {
+        identity,
+        is_solved: output.is_solved,
+        result: output.result.clone(),
+        notes: output.notes.clone(),
+        files,
+    };
+    let text = serde_json::to_string(&record).expect("words and numbers are JSON");
+    atomic::write(&path, lay_out(&text).as_bytes())
 }
 
 /// Digits of an identity.
 const DIGITS: usize = 16;
 
-/// Hexadecimal digits of a hash of a problem as it was read, with the files that it names, and of the version of the program.
-#[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Identity(String);
+/// Hexadecimal digits of a hash of a problem as it was read, with the files that it names, of the options of a run that have a part in
+/// its files, and of the version of the program.
+pub(crate) fn identity(loaded: &Loaded, request: &CommandInput) -> String {
+    // All numbers are written so that they read back identical.
+    let Loaded {
+        system,
+        task,
+        output,
+        disturbed,
+        ..
+    } = loaded;
+    let CommandInput {
+        max_iterations,
+        wanted,
+        figures,
+        page,
+        ..
+    } = request;
+    let earlier = earlier(task);
+    hash(format_args!(
+        "{system:?}{task:?}{output:?}{earlier:?}{disturbed:?}{max_iterations:?}{wanted:?}{figures:?}{page:?}"
+    ))
+}
 
-impl Identity {
-    /// Identity of a problem, with the output of its motion.
-    pub(crate) fn of_problem(loaded: &Loaded) -> Self {
-        // All numbers are written so that they read back identical.
-        let Loaded {
-            system,
-            task,
-            output,
-            disturbed,
-            ..
-        } = loaded;
-        let earlier = earlier(task);
-        let disturbed = match &disturbed[..] {
-            [] => String::new(),
-            parts => format!("{parts:?}"),
-        };
-        Self::from_text(format_args!(
-            "{system:?}{task:?}{output:?}{earlier:?}{disturbed}"
-        ))
-    }
+/// The same of overrides that make no problem.
+pub(crate) fn identity_of_words(words: &[String]) -> String {
+    hash(format_args!("{words:?}"))
+}
 
-    /// Of a problem with the options of a run that have a part in its files.
-    pub(crate) fn of_run(loaded: &Loaded, request: &CommandInput) -> Self {
-        let CommandInput {
-            max_iterations,
-            wanted,
-            figures,
-            page,
-            ..
-        } = request;
-        let Self(problem) = Self::of_problem(loaded);
-        Self::from_text(format_args!(
-            "{problem}{max_iterations:?}{wanted:?}{figures:?}{page:?}"
-        ))
-    }
-
-    /// Of overrides that make no problem.
-    pub(crate) fn of_words(words: &[String]) -> Self {
-        Self::from_text(format_args!("{words:?}"))
-    }
-
-    fn from_text(written: fmt::Arguments<'_>) -> Self {
-        let program = Origin::program();
-        Self(digest(format_args!("{program}\n{written}"), DIGITS))
-    }
-
-    /// Its digits.
-    pub(crate) fn as_str(&self) -> &str {
-        &self.0
-    }
+fn hash(written: fmt::Arguments<'_>) -> String {
+    let program = Origin::program();
+    digest(format_args!("{program}\n{written}"), DIGITS)
 }
 
 /// Hashes of the files of an earlier solution from which a task starts.

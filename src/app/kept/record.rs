@@ -1,7 +1,5 @@
-//! The summary of a result as other runs read it, and its files as they were written: their sizes and hashes, which a record in their folder keeps.
+//! The summary of a result as other runs read it, and its files as they were written: their sizes and hashes.
 
-use crate::files::lay_out;
-use crate::report::atomic::{self, WriteError};
 use crate::workflow::Remarks;
 use crate::workflow::remark::STOPPED_EARLY;
 use serde::de::DeserializeOwned;
@@ -21,13 +19,8 @@ const UNFINISHED: [&str; 5] = [
     "out_of_memory",
 ];
 
-/// Returns true if another attempt may end with another status.
-pub(crate) fn is_unfinished(status: &str) -> bool {
-    UNFINISHED.contains(&status)
-}
-
 /// Entries of a `summary.json` that other runs read.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 pub(crate) struct WrittenSummary {
     /// The problem file as typed.
     pub(crate) input: PathBuf,
@@ -44,7 +37,7 @@ pub(crate) struct WrittenSummary {
 }
 
 /// Wall time of a run in s.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Default, Deserialize)]
 pub(crate) struct WrittenSeconds {
     pub(crate) total: f64,
 }
@@ -64,56 +57,13 @@ impl WrittenSummary {
 
     /// Returns true if another attempt may end otherwise: the run failed, or a stop kept it from a better result.
     pub(crate) fn is_unfinished(&self) -> bool {
-        is_unfinished(&self.status) || self.notes.have(STOPPED_EARLY)
+        UNFINISHED.contains(&&*self.status) || self.notes.have(STOPPED_EARLY)
     }
 }
 
 /// The value in a JSON file; none where it cannot be read.
 pub(crate) fn parsed<T: DeserializeOwned>(path: &Path) -> Option<T> {
     serde_json::from_str(&fs::read_to_string(path).ok()?).ok()
-}
-
-/// The record of a run that is made once.
-pub(crate) const OF_RUN: &str = "record.json";
-/// The record of a variant of a sweep.
-pub(crate) const OF_VARIANT: &str = "variant.json";
-
-/// A record in the folder of its result, with the files there as they were written.
-pub(crate) trait FolderRecord: Serialize + DeserializeOwned {
-    /// Name of its file.
-    const NAME: &'static str;
-    /// Digits of the identity of its problem.
-    fn identity(&self) -> &str;
-    /// Files of the result.
-    fn files(&mut self) -> &mut FileRecords;
-
-    /// The record of a folder, where it is of this problem and all files are as they were written.
-    fn found(folder: &Path, identity: &str) -> Found<Self> {
-        let Ok(text) = fs::read_to_string(folder.join(Self::NAME)) else {
-            return Found::Nothing;
-        };
-        let Ok(mut record) = serde_json::from_str::<Self>(&text) else {
-            return Found::Deviates(format!("{} is not as it was written", Self::NAME));
-        };
-        if record.identity() != identity {
-            return Found::Nothing;
-        }
-        match record.files().deviation(folder) {
-            Some(words) => Found::Deviates(words),
-            None => Found::Whole(record),
-        }
-    }
-
-    /// Writes it, with the hashes of the files that the folder has now.
-    ///
-    /// # Errors
-    /// A file cannot be read or written.
-    fn write(&mut self, folder: &Path) -> Result<(), WriteError> {
-        let path = folder.join(Self::NAME);
-        *self.files() = FileRecords::from_folder(folder).map_err(WriteError::at(&path))?;
-        let text = serde_json::to_string(self).expect("words and numbers are JSON");
-        atomic::write(&path, lay_out(&text).as_bytes())
-    }
 }
 
 /// A file.
@@ -126,29 +76,14 @@ struct FileRecord {
 /// The files of a folder and its folders, by their paths within it.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(transparent)]
-pub(crate) struct FileRecords(BTreeMap<String, FileRecord>);
-
-/// State of a result in a folder.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Found<T> {
-    /// All of it as it was written.
-    Whole(T),
-    /// A file is not as it was written, in words.
-    Deviates(String),
-    /// Another result, or none.
-    Nothing,
-}
+pub(super) struct FileRecords(BTreeMap<String, FileRecord>);
 
 impl FileRecords {
-    /// The files that a folder has now, without records and unfinished files.
-    fn from_folder(folder: &Path) -> io::Result<Self> {
+    /// The files that a folder has now, without a `record` of them and unfinished files.
+    pub(super) fn from_folder(folder: &Path, record: &str) -> io::Result<Self> {
         let mut files = Self::default();
-        if folder.is_dir() {
-            files.read(folder, "")?;
-        }
-        for record in [OF_RUN, OF_VARIANT] {
-            files.0.remove(record);
-        }
+        files.read(folder, "")?;
+        files.0.remove(record);
         Ok(files)
     }
 
@@ -172,7 +107,7 @@ impl FileRecords {
     }
 
     /// The first file that is not as it was written, in words.
-    fn deviation(&self, folder: &Path) -> Option<String> {
+    pub(super) fn deviation(&self, folder: &Path) -> Option<String> {
         let mut files = self.0.iter();
         files.find_map(|(name, record)| {
             let path = folder.join(name);

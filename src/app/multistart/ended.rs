@@ -1,12 +1,12 @@
 //! Starts of a problem, their ends, and the comparison of the optima of several.
 
 use super::rank::Rank;
-use crate::app::batch::{RunEnd, Said};
+use crate::app::batch::Ended;
 use crate::app::error::CommandError;
 use crate::app::kept::record::{WrittenSummary, parsed};
 use crate::app::request::CommandInput;
-use crate::stop;
-use serde::{Deserialize, Serialize};
+use crate::files::Entries;
+use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -59,33 +59,16 @@ impl Start {
 }
 
 /// End of one start.
-#[derive(Clone, Debug, Default, Serialize)]
-pub(super) struct Ended {
-    /// Its number, from 1.
-    pub(super) start: usize,
-    /// Seed of a random guess; none for the guess of the problem itself.
-    pub(super) seed: Option<u64>,
-    /// The word of its summary; `not_started`, or `failed` where it left none.
-    pub(super) status: String,
-    /// Reason why it left no summary.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) message: Option<String>,
-    pub(super) objective: Option<f64>,
-    pub(super) iterations: Option<usize>,
-    /// Greatest violation of an equation or limit.
-    pub(super) infeasibility: Option<f64>,
-    pub(super) seconds: f64,
+#[derive(Debug)]
+pub(super) struct StartEnd {
+    pub(super) start: Start,
+    pub(super) ended: Ended,
     /// Number of the optimum it found, from 1 for the best.
     pub(super) optimum: Option<usize>,
-    #[serde(skip)]
-    pub(super) is_solved: bool,
     /// True if nothing warns that it leaves its goal afterwards, or does not come back to its period.
-    #[serde(skip)]
     pub(super) is_held: bool,
-    #[serde(skip)]
-    pub(super) voltages: Vec<f64>,
-    /// Further notes on it.
-    #[serde(skip)]
+    voltages: Vec<f64>,
+    /// Notes on it and its motions.
     pub(super) notes: Vec<String>,
 }
 
@@ -95,87 +78,81 @@ struct SolutionRecord {
     voltages: BTreeMap<String, Vec<f64>>,
 }
 
-impl Ended {
-    /// Reads what a start left.
+impl StartEnd {
+    /// Reads what a start left in its folder: its summary, and voltages and notes of the motions beside it.
     ///
     /// # Errors
     /// It says that the input is wrong.
-    pub(super) fn from_run(
-        start: Start,
-        end: &RunEnd,
-        folder: &Path,
-    ) -> Result<Self, CommandError> {
-        if let Said::Refused(message) = &end.said {
+    pub(super) fn new(start: Start, ended: Ended, folder: &Path) -> Result<Self, CommandError> {
+        let summary = &ended.summary;
+        if summary.status == "refused" {
             return Err(CommandError::Start {
                 start: start.number,
-                message: message.clone(),
+                message: ended.message.unwrap_or_default(),
             });
         }
         let path = folder_of(folder, start.number);
-        let mut ended = Self {
-            start: start.number,
-            seed: start.seed,
-            seconds: end.seconds,
-            is_held: true,
-            ..Self::default()
-        };
-        match end.summary(&path) {
-            Some(summary) => ended.read(summary, &path, end.said == Said::Solved),
-            None if end.said == Said::NotStarted => "not_started".clone_into(&mut ended.status),
-            None if stop::requested() => "interrupted".clone_into(&mut ended.status),
-            None => {
-                "failed".clone_into(&mut ended.status);
-                ended.message = end.message();
-            }
-        }
-        Ok(ended)
-    }
-
-    /// Takes the numbers of a summary, and voltages and notes of the motions beside it.
-    fn read(&mut self, summary: WrittenSummary, path: &Path, is_solved: bool) {
         let own = summary.motions.iter().map(|one| path.join(&one.folder));
         let mut folders: Vec<PathBuf> = own.collect();
-        let mut remarks = vec![(None, summary.notes)];
+        let mut remarks = vec![(None, summary.notes.clone())];
         for (motion, own) in summary.motions.iter().zip(&folders) {
             let own = WrittenSummary::of_folder(own);
             remarks.extend(own.map(|own| (Some(&motion.name), own.notes)));
         }
         if folders.is_empty() {
-            folders.push(path.to_owned());
+            folders.push(path);
         }
-        let solutions = folders.iter().filter(|_| is_solved);
+        let solutions = folders.iter().filter(|_| ended.is_solved);
         let solutions =
             solutions.filter_map(|own| parsed::<SolutionRecord>(&own.join("solution.json")));
+        let voltages = solutions.flat_map(|one| one.voltages.into_values().flatten());
         let mut all = remarks.iter().flat_map(|(_, own)| &own.0);
-        self.is_held = !all.any(|one| LEAVES.contains(&&*one.code));
-        self.voltages = solutions
-            .flat_map(|one| one.voltages.into_values().flatten())
-            .collect();
-        for (motion, own) in &remarks {
-            let name = motion.map(|name| format!("motion \"{name}\": "));
-            let name = name.unwrap_or_default();
-            self.notes
-                .extend(own.lines().map(|line| format!("{name}{line}")));
-        }
-        self.status = summary.status;
-        self.objective = summary.objective;
-        self.iterations = summary.iterations;
-        self.infeasibility = summary.infeasibility;
-        self.seconds = summary.seconds.total;
-        self.is_solved = is_solved;
+        let notes = remarks.iter().flat_map(|(motion, own)| {
+            let name = motion.map_or_else(String::new, |name| format!("motion \"{name}\": "));
+            let lines = own.lines();
+            lines.map(move |line| format!("{name}{line}"))
+        });
+        Ok(Self {
+            optimum: None,
+            is_held: !all.any(|one| LEAVES.contains(&&*one.code)),
+            voltages: voltages.collect(),
+            notes: notes.collect(),
+            start,
+            ended,
+        })
     }
 
-    /// Its rank.
+    /// Objective of its point, where there is one.
+    pub(super) fn objective(&self) -> Option<f64> {
+        self.ended.summary.objective
+    }
+
+    /// Its part of the summary.
+    pub(super) fn entries(&self) -> Entries {
+        let summary = &self.ended.summary;
+        Entries::default()
+            .with("start", self.start.number)
+            .with("seed", self.start.seed)
+            .with("status", &summary.status)
+            .with_some("message", self.ended.message.as_ref())
+            .with("objective", summary.objective)
+            .with("iterations", summary.iterations)
+            // Greatest violation of an equation or limit.
+            .with("infeasibility", summary.infeasibility)
+            .with("seconds", summary.seconds.total)
+            .with("optimum", self.optimum)
+    }
+
     fn rank(&self) -> Rank {
-        match (self.is_solved, self.objective) {
-            (true, Some(objective)) => Rank::of_optimum(objective, self.is_held),
-            _ => Rank::of_end(self.infeasibility),
+        match self.objective() {
+            Some(objective) if self.ended.is_solved => Rank::of_optimum(objective, self.is_held),
+            _ => Rank::of_end(self.ended.summary.infeasibility),
         }
     }
 
     /// Returns true if two solutions are one optimum.
     fn is_same(&self, other: &Self) -> bool {
-        let (Some(a), Some(b)) = (self.objective, other.objective) else {
+        let (Some(a), Some(b)) = (self.objective(), other.objective()) else {
             return false;
         };
         let close = |a: f64, b: f64, tolerance: f64| (a - b).abs() <= tolerance;
@@ -194,14 +171,16 @@ impl Ended {
 }
 
 /// The best start: see [`Rank`]; none where no start left a point.
-pub(super) fn best(ended: &[Ended]) -> Option<usize> {
+pub(super) fn best(ended: &[StartEnd]) -> Option<usize> {
     let best = (0..ended.len()).min_by(|&a, &b| ended[a].rank().compare(&ended[b].rank()))?;
     ended[best].rank().has_point().then_some(best)
 }
 
 /// Numbers the distinct optima, the best first; returns their number.
-pub(super) fn number_optima(ended: &mut [Ended]) -> usize {
-    let mut solved: Vec<usize> = (0..ended.len()).filter(|&i| ended[i].is_solved).collect();
+pub(super) fn number_optima(ended: &mut [StartEnd]) -> usize {
+    let mut solved: Vec<usize> = (0..ended.len())
+        .filter(|&i| ended[i].ended.is_solved)
+        .collect();
     solved.sort_by(|&a, &b| ended[a].rank().compare(&ended[b].rank()));
     let mut firsts: Vec<usize> = Vec::new();
     for i in solved {

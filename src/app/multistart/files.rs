@@ -1,6 +1,6 @@
 //! The files of the best start, and the table of all.
 
-use super::ended::{Ended, best, folder_of};
+use super::ended::{StartEnd, best, folder_of};
 use crate::app::batch::Batch;
 use crate::app::error::CommandError;
 use crate::app::kept::overwrite_check::make_folder;
@@ -19,7 +19,7 @@ use std::path::Path;
 pub(super) fn write(
     request: &CommandInput,
     batch: &Batch<'_>,
-    ended: &[Ended],
+    ended: &[StartEnd],
     distinct: usize,
 ) -> Result<CommandOutput, CommandError> {
     let folder = &*request.folder();
@@ -29,7 +29,7 @@ pub(super) fn write(
     // Of the starts that found the best optimum the first, whatever the last digits say.
     let first = ended.iter().find(|one| one.optimum == Some(1));
     let best = first.or_else(|| best(ended).map(|i| &ended[i]));
-    let solved = ended.iter().filter(|one| one.is_solved).count();
+    let solved = ended.iter().filter(|one| one.ended.is_solved).count();
     let seconds = batch.began.elapsed().as_secs_f64();
     let section = Entries::default()
         .with("command", &request.command)
@@ -38,12 +38,12 @@ pub(super) fn write(
         .with("solved", solved)
         .with("distinct_optima", distinct)
         // The start whose files these are.
-        .with("best", best.map(|one| one.start))
+        .with("best", best.map(|one| one.start.number))
         // Wall time of all of them.
         .with("seconds", seconds)
-        .with("each", ended);
+        .with_each("each", ended.iter().map(StartEnd::entries));
     if let Some(best) = best {
-        copy(&folder_of(folder, best.start), folder, &section)?;
+        copy(&folder_of(folder, best.start.number), folder, &section)?;
     }
     let is_stopped = stop::requested();
     let is_solved = solved > 0 && !is_stopped;
@@ -53,7 +53,7 @@ pub(super) fn write(
         if distinct == 1 { "optimum" } else { "optima" },
         folder.display()
     );
-    let head = match best.and_then(|best| best.objective) {
+    let head = match best.and_then(StartEnd::objective) {
         Some(objective) if is_solved => {
             format!("solved: objective {}, {counts}", significant(objective, 8))
         }
@@ -68,8 +68,9 @@ pub(super) fn write(
     let mut notes = best.map_or_else(Vec::new, |best| best.notes.clone());
     notes.extend(best.and_then(|best| lower(best, ended)));
     for one in ended {
-        let told = one.message.as_deref().map(printable);
-        notes.extend(told.map(|message| format!("start {} failed: {message}", one.start)));
+        let told = one.ended.message.as_deref().map(printable);
+        let number = one.start.number;
+        notes.extend(told.map(|message| format!("start {number} failed: {message}")));
     }
     if is_stopped {
         notes.push("interrupted; the files hold the best start that had ended".to_owned());
@@ -82,10 +83,12 @@ pub(super) fn write(
 }
 
 /// A note where a start whose goal is not held has a lower objective than the best one.
-fn lower(best: &Ended, ended: &[Ended]) -> Option<String> {
-    let objective = best.objective.filter(|_| best.is_solved)?;
-    let others = ended.iter().filter(|one| one.is_solved && !one.is_held);
-    let mut lower = others.filter_map(|one| Some((one.start, one.objective?)));
+fn lower(best: &StartEnd, ended: &[StartEnd]) -> Option<String> {
+    let objective = best.objective().filter(|_| best.ended.is_solved)?;
+    let others = ended
+        .iter()
+        .filter(|one| one.ended.is_solved && !one.is_held);
+    let mut lower = others.filter_map(|one| Some((one.start.number, one.objective()?)));
     let (start, other) = lower.find(|(_, other)| best.is_held && *other < objective)?;
     Some(format!(
         "note: start {start} has the lower objective {}, but does not keep its goal or period",
@@ -104,17 +107,18 @@ pub(super) const COLUMNS: [&str; 7] = [
 ];
 
 /// The table as text for people.
-pub(super) fn rows(ended: &[Ended]) -> Vec<Vec<String>> {
+pub(super) fn rows(ended: &[StartEnd]) -> Vec<Vec<String>> {
     let or_dash = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
-    let row = |one: &Ended| {
+    let row = |one: &StartEnd| {
         vec![
-            one.start.to_string(),
-            one.seed
+            one.start.number.to_string(),
+            one.start
+                .seed
                 .map_or("own".to_owned(), |seed| format!("seed {seed}")),
-            one.status.replace('_', " "),
-            or_dash(one.objective.map(|value| significant(value, 8))),
-            or_dash(one.iterations.map(|count| count.to_string())),
-            format!("{:.2}", one.seconds),
+            one.ended.summary.status.replace('_', " "),
+            or_dash(one.objective().map(|value| significant(value, 8))),
+            or_dash(one.ended.summary.iterations.map(|count| count.to_string())),
+            format!("{:.2}", one.ended.summary.seconds.total),
             or_dash(one.optimum.map(|number| number.to_string())),
         ]
     };
@@ -123,7 +127,7 @@ pub(super) fn rows(ended: &[Ended]) -> Vec<Vec<String>> {
 }
 
 /// The table as `starts.csv`; cells without a value are empty.
-fn cells(ended: &[Ended]) -> Vec<Vec<String>> {
+fn cells(ended: &[StartEnd]) -> Vec<Vec<String>> {
     let header = [
         "start",
         "seed",
@@ -135,14 +139,16 @@ fn cells(ended: &[Ended]) -> Vec<Vec<String>> {
     ];
     let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:?}"));
     let count = |value: Option<usize>| value.map_or_else(String::new, |v| v.to_string());
-    let row = |one: &Ended| {
+    let row = |one: &StartEnd| {
         vec![
-            one.start.to_string(),
-            one.seed.map_or_else(String::new, |seed| seed.to_string()),
-            one.status.clone(),
-            number(one.objective),
-            count(one.iterations),
-            number(Some(one.seconds)),
+            one.start.number.to_string(),
+            one.start
+                .seed
+                .map_or_else(String::new, |seed| seed.to_string()),
+            one.ended.summary.status.clone(),
+            number(one.objective()),
+            count(one.ended.summary.iterations),
+            number(Some(one.ended.summary.seconds.total)),
             count(one.optimum),
         ]
     };

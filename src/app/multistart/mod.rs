@@ -21,7 +21,7 @@ use crate::control::Motion;
 use crate::control::problem::Task;
 use crate::files::{Loaded, is_standard_input};
 use crate::workflow::program::resolve;
-use ended::{Ended, FOLDER, Start, best, number_optima};
+use ended::{FOLDER, Start, StartEnd, best, number_optima};
 use files::write;
 
 /// Most starting points of one command; the seed of a start is that of the command times this number and its own.
@@ -81,14 +81,12 @@ pub fn solve_text_from_starts(
         max_seconds: request.max_seconds,
         began,
     };
-    let mut ended: Vec<Ended> = Vec::new();
-    run_all(&batch, "start", request.progress, &mut |index, end| {
-        let one = Ended::from_run(plan[index], &end, &folder)?;
-        let is_solved = one.is_solved;
-        ended.push(one);
-        Ok((is_solved, best(&ended).and_then(|i| ended[i].objective)))
+    let mut ended: Vec<StartEnd> = Vec::new();
+    run_all(&batch, "start", request.progress, &mut |index, one| {
+        ended.push(StartEnd::new(plan[index], one, &folder)?);
+        Ok(best(&ended).and_then(|i| ended[i].objective()))
     })?;
-    ended.sort_by_key(|one| one.start);
+    ended.sort_by_key(|one| one.start.number);
     let distinct = number_optima(&mut ended);
     write(request, &batch, &ended, distinct)
 }

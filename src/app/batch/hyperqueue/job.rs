@@ -3,7 +3,7 @@
 use crate::app::batch::launch::{RunEnd, Said, of_status, words};
 use crate::app::error::CommandError;
 use crate::app::kept::overwrite_check::make_folder;
-use crate::app::kept::record::{WrittenSummary, parsed};
+use crate::app::kept::record::parsed;
 use crate::app::request::CommandInput;
 use crate::report::atomic;
 use crate::report::atomic::WriteError;
@@ -134,9 +134,7 @@ fn line(command: &CommandInput) -> Result<String, CommandError> {
     let program =
         std::env::current_exe().map_err(|cause| CommandError::Engine(cause.to_string()))?;
     let mut quoted = Vec::new();
-    // A server that is started again from its journal may hand out a task once more that has ended.
-    let words = words(command).into_iter().chain(["--once".into()]);
-    for word in [program.into_os_string()].into_iter().chain(words) {
+    for word in [program.into_os_string()].into_iter().chain(words(command)) {
         let word = word.into_string().ok().filter(|word| !word.contains('\n'));
         let word = word.ok_or_else(|| {
             CommandError::option(
@@ -166,9 +164,8 @@ impl Task {
         !matches!(self.state.as_str(), "waiting" | "running")
     }
 
-    /// Returns its end, with what it wrote to standard error in the file `standard_error`, and its results in `folder`; none where it was
-    /// cancelled.
-    pub(super) fn end(&self, standard_error: &Path, folder: &Path) -> Option<RunEnd> {
+    /// Returns its end, with what it wrote to standard error in the file `standard_error`; none where it was cancelled.
+    pub(super) fn end(&self, standard_error: &Path) -> Option<RunEnd> {
         let words = fs::read_to_string(standard_error).unwrap_or_default();
         let said = match (self.state.as_str(), self.exit_status()) {
             ("finished", _) => Said::Solved,
@@ -176,8 +173,8 @@ impl Task {
             ("failed", None) => Said::Failed(self.error.clone().unwrap_or(words)),
             _ => return None,
         };
-        let summary = WrittenSummary::of_folder(folder);
-        let seconds = summary.map_or(0.0, |summary| summary.seconds.total);
+        // The server does not tell them.
+        let seconds = 0.0;
         Some(RunEnd { said, seconds })
     }
 

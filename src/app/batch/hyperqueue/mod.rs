@@ -65,8 +65,7 @@ fn follow(
                 continue;
             };
             left.remove(&task.id);
-            let Some(end) = task.end(&job.standard_error(task.id), &batch.runs[index].folder())
-            else {
+            let Some(end) = task.end(&job.standard_error(task.id)) else {
                 continue;
             };
             open.remove(&index);
