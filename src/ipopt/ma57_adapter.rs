@@ -27,67 +27,9 @@ const FAILED: c_int = -1;
 /// Length of the arrays that nothing is stored in.
 const UNUSED: c_int = 10;
 
-/// Order and number of entries, rows and columns counted from one; then what MA57 writes.
-type Analyse = unsafe extern "C" fn(
-    *mut c_int,
-    *mut c_int,
-    *const c_int,
-    *const c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut f64,
-);
-type Factor = unsafe extern "C" fn(
-    *mut c_int,
-    *mut c_int,
-    *mut f64,
-    *mut f64,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut f64,
-    *mut c_int,
-    *mut f64,
-);
-type Solve = unsafe extern "C" fn(
-    *mut c_int,
-    *mut c_int,
-    *mut f64,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut f64,
-    *mut c_int,
-    *mut f64,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-);
-type Enlarge = unsafe extern "C" fn(
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut f64,
-    *mut c_int,
-    *mut f64,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-    *mut c_int,
-);
-type Initialise = unsafe extern "C" fn(*mut f64, *mut c_int);
-type SetMa57 = unsafe extern "C" fn(Analyse, Factor, Solve, Enlarge, Initialise);
+/// Takes the functions of analysis, factorisation, solution, of more room, and of defaults, whose arguments MA57 gives.
+type SetMa57 =
+    unsafe extern "C" fn(*const c_void, *const c_void, *const c_void, *const c_void, *const c_void);
 
 type LinearSolvers = unsafe extern "C" fn(c_int) -> c_uint;
 
@@ -119,23 +61,26 @@ pub(super) fn install() -> Result<(), NoStages> {
         }
         let symbol = SETTERS.into_iter().find_map(|name| ipopt.function(name));
         let symbol = symbol.ok_or(NoStages::WithoutSetter)?;
-        // SAFETY: `HSLLoader.h` declares the first function and its five arguments with these types, the second one's name tells them, and a
-        // static function of C++ is called as one of C.
+        // SAFETY: `HSLLoader.h` declares the first function with five pointers to functions, the second one's name tells them, and a static
+        // function of C++ is called as one of C; a pointer to a function is passed as any other.
         let set = unsafe { mem::transmute::<NonNull<c_void>, SetMa57>(symbol) };
-        // SAFETY: as above; the functions live as long as the process, and the cell keeps other threads out.
+        let [analyse, factor, solve, enlarge, initialise] = functions_of_ma57();
+        // SAFETY: the functions have the arguments of MA57 and live as long as the process, and the cell keeps other threads out.
         unsafe { set(analyse, factor, solve, enlarge, initialise) };
         Ok(())
     })
 }
 
-/// Returns the functions that Ipopt calls in the place of MA57, in the order of its setter; for tests.
+/// Functions that Ipopt calls in the place of MA57, in the order of its setter.
 #[doc(hidden)]
 #[must_use]
-pub fn functions_of_ma57() -> [*const c_void; 3] {
+pub fn functions_of_ma57() -> [*const c_void; 5] {
     [
         analyse as *const c_void,
         factor as *const c_void,
         solve as *const c_void,
+        enlarge as *const c_void,
+        initialise as *const c_void,
     ]
 }
 
