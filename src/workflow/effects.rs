@@ -309,92 +309,37 @@ fn time(mut evaluate: impl FnMut(), spent: f64) -> f64 {
 /// In place of the number of an unknown.
 const NONE: u32 = u32::MAX;
 
-/// Lists of numbers, one behind the other.
-#[derive(Debug)]
-struct Lists {
-    starts: Vec<usize>,
-    items: Vec<u32>,
-}
-
-impl Lists {
-    /// The lists whose items `visit` hands over with the numbers of their lists, in two passes.
-    fn new(count: usize, visit: impl Fn(&mut dyn FnMut(usize, u32))) -> Self {
-        let mut starts = vec![0; count + 1];
-        visit(&mut |list, _| starts[list + 1] += 1);
-        for list in 0..count {
-            starts[list + 1] += starts[list];
-        }
-        let (mut next, mut items) = (starts.clone(), vec![0; starts[count]]);
-        visit(&mut |list, item| {
-            items[next[list]] = item;
-            next[list] += 1;
-        });
-        Self { starts, items }
-    }
-
-    fn of(&self, list: usize) -> &[u32] {
-        &self.items[self.starts[list]..self.starts[list + 1]]
-    }
-
-    /// The same lists, each item once.
-    fn each_once(mut self) -> Self {
-        let mut end = 0;
-        for list in 0..self.starts.len() - 1 {
-            let (first, own) = (end, self.starts[list]..self.starts[list + 1]);
-            self.items[own.clone()].sort_unstable();
-            self.starts[list] = first;
-            for place in own {
-                let item = self.items[place];
-                if end == first || self.items[end - 1] != item {
-                    self.items[end] = item;
-                    end += 1;
-                }
-            }
-        }
-        if let Some(last) = self.starts.last_mut() {
-            *last = end;
-        }
-        self.items.truncate(end);
-        self.items.shrink_to_fit();
-        self
-    }
-}
-
 /// The unknowns that vectors and scalars depend on: arguments are the vectors, then the scalars of the site.
 #[derive(Debug)]
 pub(super) struct Arguments<'a> {
     map: &'a CoordinateMap,
     /// Unknowns of each argument.
-    unknowns: Lists,
+    unknowns: Vec<Vec<usize>>,
     /// Arguments of each unknown.
-    arguments: Lists,
+    arguments: Vec<Vec<usize>>,
 }
 
 impl<'a> Arguments<'a> {
     /// Of so many scalars of a site.
     pub(super) fn new(map: &'a CoordinateMap, scalars: usize) -> Self {
-        let vectors = map.vectors.len();
-        let each = |to: &mut dyn FnMut(usize, usize)| {
-            for vector in 0..vectors {
-                let support = map.support(vector);
-                support.into_iter().for_each(|unknown| to(vector, unknown));
-            }
-            (0..scalars).for_each(|s| to(vectors + s, map.coordinates + s));
-        };
+        let of_vectors = (0..map.vectors.len()).map(|vector| map.support(vector));
+        let of_scalars = (0..scalars).map(|s| vec![map.coordinates + s]);
+        let unknowns: Vec<Vec<usize>> = of_vectors.chain(of_scalars).collect();
+        let mut arguments = vec![Vec::new(); map.coordinates + scalars];
+        for (argument, own) in unknowns.iter().enumerate() {
+            own.iter()
+                .for_each(|&unknown| arguments[unknown].push(argument));
+        }
         Self {
             map,
-            unknowns: Lists::new(vectors + scalars, |to| {
-                each(&mut |argument, unknown| to(argument, unknown as u32));
-            }),
-            arguments: Lists::new(map.coordinates + scalars, |to| {
-                each(&mut |argument, unknown| to(unknown, argument as u32));
-            }),
+            unknowns,
+            arguments,
         }
     }
 
     /// Number of unknowns.
     pub(super) fn count(&self) -> usize {
-        self.arguments.starts.len() - 1
+        self.arguments.len()
     }
 
     /// Returns true if two unknowns meet where vectors are multiplied by each other: directors and nodes component by component, joint
@@ -410,36 +355,25 @@ impl<'a> Arguments<'a> {
 /// An effect with the arguments that it couples.
 pub(super) struct Coupled<'a> {
     pub(super) effect: &'a dyn Term,
-    /// Twice the argument that each one is coupled with, and one more where only vectors are multiplied.
-    partners: Lists,
+    /// The arguments that each one is coupled with, and true where only vectors are multiplied.
+    partners: Vec<Vec<(u32, bool)>>,
 }
 
 impl<'a> Coupled<'a> {
     /// The couplings of an effect.
     pub(super) fn new(effect: &'a dyn Term, of: &Arguments<'_>) -> Self {
-        let (vectors, count) = (of.map.vectors.len(), of.unknowns.starts.len() - 1);
-        let ordered = Lists::new(count, |to| {
-            effect.couple(&mut |coupling| {
-                let (a, b, by_axis) = match coupling {
-                    None => return,
-                    Some(Coupling::Full(a, b)) => (a, b, 0),
-                    Some(Coupling::Isotropic(a, b)) => (a, b, 1),
-                    Some(Coupling::Mixed(a, s)) => (a, vectors + s, 0),
-                    Some(Coupling::Scalars(s, t)) => (vectors + s, vectors + t, 0),
-                };
-                to(a.min(b), 2 * a.max(b) as u32 + by_axis);
-            });
-        })
-        .each_once();
-        let partners = Lists::new(count, |to| {
-            for a in 0..count {
-                for &item in ordered.of(a) {
-                    let b = item as usize / 2;
-                    to(a, item);
-                    if a != b {
-                        to(b, 2 * a as u32 + item % 2);
-                    }
-                }
+        let vectors = of.map.vectors.len();
+        let mut partners = vec![Vec::new(); of.unknowns.len()];
+        effect.couple(&mut |coupling| {
+            let (a, b, by_axis) = match coupling {
+                None => return,
+                Some(Coupling::Full(a, b)) => (a, b, false),
+                Some(Coupling::Isotropic(a, b)) => (a, b, true),
+                Some(Coupling::Mixed(a, s)) => (a, vectors + s, false),
+                Some(Coupling::Scalars(s, t)) => (vectors + s, vectors + t, false),
+            };
+            for (one, other) in [(a, b), (b, a)] {
+                add(&mut partners[one], (other as u32, by_axis));
             }
         });
         Self { effect, partners }
@@ -447,11 +381,11 @@ impl<'a> Coupled<'a> {
 
     /// Hands over the unknowns that one is coupled with, some of them more than once.
     fn each_partner(&self, of: &Arguments<'_>, i: usize, mut to: impl FnMut(usize)) {
-        for &argument in of.arguments.of(i) {
-            for &item in self.partners.of(argument as usize) {
-                for &j in of.unknowns.of(item as usize / 2) {
-                    if item % 2 == 0 || of.meet(i, j as usize) {
-                        to(j as usize);
+        for &argument in &of.arguments[i] {
+            for &(partner, by_axis) in &self.partners[argument] {
+                for &j in &of.unknowns[partner as usize] {
+                    if !by_axis || of.meet(i, j) {
+                        to(j);
                     }
                 }
             }
@@ -476,6 +410,16 @@ impl<'a> Coupled<'a> {
         self.each_partner(of, i, |partner| is_met |= partner == j);
         is_met
     }
+}
+
+/// Adds an item to a list, which keeps each one once before it takes more memory.
+fn add<T: Copy + Ord>(list: &mut Vec<T>, item: T) {
+    if list.len() == list.capacity() {
+        list.sort_unstable();
+        list.dedup();
+        list.reserve(list.len());
+    }
+    list.push(item);
 }
 
 /// Direction of a coordinate that moves along one; `None` for a joint's.
