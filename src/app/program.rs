@@ -10,9 +10,7 @@ use crate::files::feedback::{factor_of, unit_of};
 use crate::model::System;
 use crate::nlp::Nlp;
 use crate::tasks::{self, CheckResult};
-use crate::workflow::program::{
-    Counted, PreparedTogether, prepare_together, program_motions, resolve_each,
-};
+use crate::workflow::program::with_joined;
 use crate::workflow::receding::{Horizon, RecedingHorizon, Source};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -89,12 +87,7 @@ pub(super) fn joined<R>(
 ) -> Result<R, CommandError> {
     let once = task.with_limits_once();
     let task = task.with(once.iter().map(|control| &**control));
-    let resolved = resolve_each(&task).map_err(CommandError::in_file(input))?;
-    let motions = program_motions(&task, &resolved);
-    let PreparedTogether {
-        mut program, point, ..
-    } = prepare_together(&motions, &task, Counted::Yes).map_err(CommandError::in_file(input))?;
-    Ok(read_program(&mut program, &point.x))
+    with_joined(&task, read_program).map_err(CommandError::in_file(input))
 }
 
 /// Compares gradient, Jacobian and Hessian with differences; not solved where an entry is wrong.

@@ -2,8 +2,8 @@
 
 use crate::control;
 use crate::control::problem::{
-    Ahead, BoundaryState, Combined, ControlTask, Duration, Guess, MotionTask, OutcomeOf,
-    QuantityCost, Regulator, SoughtHold, Varied, Voltages,
+    Ahead, BoundaryState, Combined, Duration, Guess, MotionTask, OutcomeOf, QuantityCost,
+    Regulator, SoughtHold, Varied, Voltages,
 };
 use crate::control::{Earlier, EarlierSolution, Motions, problem};
 use crate::interface::builder::builder;
@@ -21,8 +21,7 @@ use crate::tasks;
 use crate::tasks::SolveRequest;
 use crate::workflow::memory::Occasion;
 use crate::workflow::optimum::SolveLimits;
-use crate::workflow::program::resolve;
-use crate::workflow::program::{Counted, PreparedTogether, prepare_together, program_motions};
+use crate::workflow::program::with_joined;
 use crate::workflow::receding::Horizon;
 use crate::workflow::{Iterate, memory};
 use std::collections::BTreeMap;
@@ -104,14 +103,8 @@ impl Control {
         let system = &system.checked()?;
         memory::of_elements(system, Occasion::Factors)?;
         let control = self.resolve(system)?;
-        let (model, boundary) = resolve(system, &control)?;
-        let task = ControlTask::from(MotionTask::alone(system, &control));
-        let resolved = [(model, boundary)];
-        let motions = program_motions(&task, &resolved);
-        let PreparedTogether {
-            mut program, point, ..
-        } = prepare_together(&motions, &task, Counted::Yes)?;
-        Ok(read(&mut program, &point.x))
+        let task = MotionTask::alone(system, &control).into();
+        Ok(with_joined(&task, read)?)
     }
 
     pub(super) fn resolve(&self, system: &System) -> Result<problem::Control> {

@@ -7,8 +7,8 @@ use crate::control::{
 };
 use crate::ipopt::{Start, StartingPoint};
 use crate::model::{Model, Parameter, System, What, with_parameters};
-use crate::nlp::Multipliers;
 use crate::nlp::joined::{Joined, Places, SharedVariable};
+use crate::nlp::{Multipliers, Nlp};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::{hold_check, memory};
 
@@ -78,14 +78,7 @@ pub(crate) fn prepare_together<'m>(
     let parts: Vec<ProgramPart<'m>> = parts.collect();
     let rest = states_of_rest(motions, &parts)
         .map_err(|error| WorkflowError::boundary("control", &error))?;
-    let list = parts.iter().map(|part| &part.program);
-    let list: Vec<&Transcription<'_>> = list.chain(rest.iter().map(|one| &one.1.program)).collect();
-    let beside = rest.iter().map(|(motion, one)| Beside {
-        motion: *motion,
-        shared: &one.shared,
-    });
-    let beside: Vec<Beside<'_>> = beside.collect();
-    let shared = shared_variables(&list, &beside, task.shared_inputs)?;
+    let shared = shared_variables(&parts, &rest, task.shared_inputs)?;
     let (program, point) = joined(parts, rest, &shared, task.combined);
     Ok(PreparedTogether {
         point,
@@ -94,6 +87,20 @@ pub(crate) fn prepare_together<'m>(
         shared,
         carried,
     })
+}
+
+/// Hands the program of a task to `read`, with the point to start from.
+///
+/// # Errors
+/// As of [`resolve_each`] and [`prepare_together`].
+pub(crate) fn with_joined<R>(
+    task: &ControlTask<'_>,
+    read: impl FnOnce(&mut dyn Nlp, &[f64]) -> R,
+) -> Result<R, WorkflowError> {
+    let resolved = resolve_each(task)?;
+    let motions = program_motions(task, &resolved);
+    let mut prepared = prepare_together(&motions, task, Counted::Yes)?;
+    Ok(read(&mut prepared.program, &prepared.point.x))
 }
 
 /// The start that suits all of these: where they differ, what is known of all of them counts.
@@ -298,29 +305,23 @@ fn joined_point(places: &Places, points: &[StartingPoint]) -> StartingPoint {
     }
 }
 
-/// A program beside those of the motions: of a state of rest of one of them.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Beside<'a> {
-    /// The motion.
-    pub(super) motion: usize,
-    /// Variables of the motion and of this program that are one.
-    pub(super) shared: &'a [[usize; 2]],
-}
-
 /// The shared variables of programs, none of a single one: intervals of the named inputs, then constants, then coordinates of states of
 /// rest, whose programs come last.
 ///
 /// # Errors
 /// A constant is not sought alike in all motions, or an input not at the same instants.
-pub(super) fn shared_variables(
-    programs: &[&Transcription<'_>],
-    beside: &[Beside<'_>],
+fn shared_variables(
+    parts: &[ProgramPart<'_>],
+    rest: &[(usize, RestProgram<'_>)],
     inputs: &[String],
 ) -> Result<Vec<SharedVariable>, WorkflowError> {
-    let [first, _, ..] = programs else {
+    let of_motions = parts.iter().map(|part| &part.program);
+    let of_rest = rest.iter().map(|(_, one)| &one.program);
+    let programs: Vec<&Transcription<'_>> = of_motions.chain(of_rest).collect();
+    let [first, _, ..] = programs[..] else {
         return Ok(Vec::new());
     };
-    let motions = programs.len() - beside.len();
+    let motions = parts.len();
     let mut shared = Vec::new();
     for name in inputs {
         for k in 0..first.intervals() {
@@ -354,19 +355,19 @@ pub(super) fn shared_variables(
     let of_first = |places: &[usize]| first.column_scale(places[0]);
     let variable = |places: Vec<usize>| {
         let scale = of_first(&places);
-        let each = places.iter().zip(programs);
+        let each = places.iter().zip(&programs);
         let of = each.map(|(&place, of)| Some((place, scale / of.column_scale(place))));
         let mut all: Vec<_> = of.collect();
         all.resize(programs.len(), None);
         SharedVariable(all)
     };
     let mut all: Vec<SharedVariable> = shared.into_iter().map(variable).collect();
-    for (number, one) in (motions..).zip(beside) {
+    for (number, (motion, one)) in (motions..).zip(rest) {
         let scale = |program: usize, place: usize| programs[program].column_scale(place);
         let coordinate = |&[of_motion, own]: &[usize; 2]| {
             let mut places = vec![None; programs.len()];
-            let factor = scale(one.motion, of_motion) / scale(number, own);
-            places[one.motion] = Some((of_motion, 1.0));
+            let factor = scale(*motion, of_motion) / scale(number, own);
+            places[*motion] = Some((of_motion, 1.0));
             places[number] = Some((own, factor));
             SharedVariable(places)
         };
