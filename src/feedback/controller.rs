@@ -157,8 +157,7 @@ impl<'l> Controller<'l> {
             let slack = 1e-9 * (most - least);
             is_beyond[0] |= wanted < least - slack;
             is_beyond[1] |= wanted > most + slack;
-            let kept = wanted.clamp(least, most);
-            out[i] = if input.is_squared { kept.sqrt() } else { kept };
+            out[i] = input.corrected(point.inputs[i], correction[i]);
         }
         for (side, is_beyond) in is_beyond.into_iter().enumerate() {
             if is_beyond && !self.is_saturated[side] {

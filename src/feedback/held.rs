@@ -164,6 +164,12 @@ pub fn riccati_step(
     is_finite.then_some(RiccatiStep { gain, cost })
 }
 
+/// A row of a matrix times a vector.
+pub(crate) fn product(matrix: &DMatrix<f64>, row: usize, vector: &[f64]) -> f64 {
+    let terms = vector.iter().enumerate();
+    terms.map(|(i, value)| matrix[(row, i)] * value).sum()
+}
+
 /// The symmetric part of a matrix.
 pub(crate) fn symmetric(matrix: DMatrix<f64>) -> DMatrix<f64> {
     0.5 * (&matrix + matrix.transpose())

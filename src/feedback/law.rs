@@ -18,6 +18,7 @@
 //! Of forces f on coordinates, which inputs u change by F u where the goal is held, the inputs against them are those within their bounds with the
 //! least `|F u + f|`, by a bounded number of sweeps of coordinate descent that begin at those of the last sample.
 
+use crate::feedback::held::product;
 use nalgebra::DMatrix;
 
 /// A quantity that is measured: a coordinate or the rate of one.
@@ -79,6 +80,13 @@ impl LawInput {
             }
             false => (given + correction, [low, high], given),
         }
+    }
+
+    /// The input with a correction, within its bounds.
+    pub fn corrected(&self, given: f64, correction: f64) -> f64 {
+        let (wanted, [low, high], _) = self.wanted(given, correction);
+        let kept = wanted.clamp(low, high);
+        if self.is_squared { kept.sqrt() } else { kept }
     }
 
     /// Returns true if a value is within 1e-4 of its range, of squares where it acts by them, of its lower (0) or upper (1) bound.
@@ -181,10 +189,7 @@ impl Law {
     pub fn correct(&self, time: f64, deviation: &[f64], correction: &mut [f64]) {
         let Point { gain, offset, .. } = self.at(time);
         for (input, value) in correction.iter_mut().enumerate() {
-            let terms = deviation.iter().enumerate();
-            *value = -terms
-                .map(|(place, d)| gain[(input, place)] * d)
-                .sum::<f64>();
+            *value = -product(gain, input, deviation);
         }
         let offsets = correction.iter_mut().zip(offset);
         offsets.for_each(|(value, offset)| *value += offset);
@@ -265,30 +270,19 @@ impl Filter {
     /// Corrects a predicted state by readings.
     pub(super) fn correct(&self, readings: &[f64], state: &mut [f64], errors: &mut [f64]) {
         for (row, error) in errors.iter_mut().enumerate() {
-            let known = state.iter().enumerate();
-            let known = known.map(|(i, x)| self.output[(row, i)] * x).sum::<f64>();
+            let known = product(&self.output, row, state);
             let found = readings[row] - self.readings[row] - known;
             *error = if found.is_finite() { found } else { 0.0 };
         }
         for (i, x) in state.iter_mut().enumerate() {
-            let terms = errors.iter().enumerate();
-            *x += terms
-                .map(|(row, error)| self.gain[(i, row)] * error)
-                .sum::<f64>();
+            *x += product(&self.gain, i, errors);
         }
     }
 
     /// The state of the next interval.
     pub(super) fn predict(&self, state: &[f64], inputs: &[f64], next: &mut [f64]) {
         for (i, next) in next.iter_mut().enumerate() {
-            let by_state = state.iter().enumerate();
-            let by_inputs = inputs.iter().enumerate();
-            *next = by_state
-                .map(|(j, x)| self.by_state[(i, j)] * x)
-                .sum::<f64>()
-                + by_inputs
-                    .map(|(j, u)| self.by_inputs[(i, j)] * u)
-                    .sum::<f64>();
+            *next = product(&self.by_state, i, state) + product(&self.by_inputs, i, inputs);
         }
     }
 }
@@ -355,8 +349,7 @@ impl Lasting {
         left: &mut [f64],
     ) {
         for (row, left) in left.iter_mut().enumerate() {
-            let held = against.iter().enumerate();
-            *left = forces[row] + held.map(|(i, u)| self.by_inputs[(row, i)] * u).sum::<f64>();
+            *left = forces[row] + product(&self.by_inputs, row, against);
         }
         for _ in 0..SWEEPS {
             for (i, u) in against.iter_mut().enumerate() {

@@ -8,8 +8,8 @@ mod held;
 mod law;
 
 pub use controller::{Controller, DelayLine, Estimate};
-pub(crate) use held::symmetric;
 pub use held::{Costs, HeldGain, NotHeld, RiccatiStep, held_gain, riccati_step, spectral_radius};
+pub(crate) use held::{product, symmetric};
 pub use law::{
     Filter, Forced, Integral, Lasting, Law, LawInput, Measured, Memory, Observer, Point, Reading,
 };

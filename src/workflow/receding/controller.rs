@@ -62,8 +62,6 @@ pub struct RecedingHorizon<'h> {
     iteration: Iteration<Program<'h>>,
     shift: Shift,
     state: Predicted<'h>,
-    /// True of the inputs that act by their squares.
-    is_squared: Vec<bool>,
     /// Interval of the plan.
     interval: usize,
     /// True if the plan has factors; none before it was prepared.
@@ -107,7 +105,6 @@ impl<'h> RecedingHorizon<'h> {
             iteration: Iteration::new(program, &x, &is_held, BARRIER * of.weight()),
             shift,
             state: Predicted::new(law, of.delay()),
-            is_squared: of.squared(),
             interval: 0,
             prepared: None,
             answered: None,
@@ -300,7 +297,7 @@ impl<'h> RecedingHorizon<'h> {
     /// Reads the inputs of the first interval of a point, within their bounds.
     fn read(&mut self, point: usize) {
         let program = &self.iteration.program;
-        program.first_inputs(&self.points[point], &mut self.inputs, &self.is_squared);
+        program.first_inputs(&self.points[point], &mut self.inputs);
         for (value, input) in self.inputs.iter_mut().zip(&self.of.law().inputs) {
             let [low, high] = input.bounds;
             *value = value.max(low).min(high);

@@ -6,10 +6,10 @@ use crate::control::problem::{
 use crate::control::{
     BoundaryConditions, BoundaryError, Carried, InitialGuess, Rests, Transcription,
 };
-use crate::dynamics::{DiscreteTrajectory, Linearisation, NoState, step_inputs};
-use crate::feedback::Law;
+use crate::dynamics::{DiscreteTrajectory, step_inputs};
+use crate::feedback::{Law, Measured};
 use crate::ipopt::{IpoptError, Options, StartingPoint, solve};
-use crate::model::{Model, System, Time};
+use crate::model::{Model, Role, System, Time};
 use crate::nlp::{Nlp, Status};
 use crate::stop::{self, Stopped};
 use crate::workflow::error::WorkflowError;
@@ -18,7 +18,7 @@ use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::SolveLimits;
 use crate::workflow::receding::layout::{Reference, Steered};
 use crate::workflow::receding::program::Program;
-use crate::workflow::regulator::{Along, NOTHING_HOLDS, NoRegulator, predicting, rate_weight};
+use crate::workflow::regulator::{Along, NOTHING_HOLDS, NoRegulator, predicting};
 use std::ops::ControlFlow;
 use thiserror::Error;
 
@@ -81,30 +81,19 @@ impl Horizon {
         }
         boundary.goal.coordinates.fill(None);
         boundary.start.momentum.fill(0.0);
-        let squared = step_inputs(&model).into_iter().filter(|input| {
-            let source = model.variables.of(Time::Interval)[input.scalar].source;
-            source.is_some_and(|source| !control.is_given(source))
-        });
-        let inputs = squared.zip(&found.law.inputs);
-        let inputs = inputs.map(|(input, of)| (input.scalar, of.is_squared));
-        let state = |error: NoState| NoHorizon::Regulator(NoRegulator::State(error));
-        let linearisation = Linearisation::new(&model, &[]).map_err(state)?;
-        let coordinates = linearisation.coordinates().to_vec();
-        let inert = linearisation.momenta().to_vec();
-        let inert: Vec<usize> = (0..coordinates.len())
-            .filter(|&c| inert.contains(&coordinates[c]))
-            .collect();
-        drop(linearisation);
-        let weight = |c: usize| match inert.contains(&c) {
-            true => rate_weight(&model, task, coordinates[c], h),
-            false => 0.0,
-        };
+        let measured = found.law.measured.iter();
+        let (rates, places): (Vec<&Measured>, Vec<_>) = measured.partition(|one| one.is_rate);
+        let is_inert = |&c: &usize| rates.iter().any(|rate| rate.name == places[c].name);
+        let inputs = step_inputs(&model).into_iter().zip(&found.law.inputs);
+        let forces = found.law.lasting().iter();
         let steered = Steered {
-            rates: (0..coordinates.len()).map(weight).collect(),
-            forced: forced(&model, &coordinates, &found.law),
-            coordinates,
-            inert,
-            inputs: inputs.collect(),
+            rates: found.steps[0].rates[..places.len()].to_vec(),
+            forced: forces.map(|one| named(&model, &one.name)).collect(),
+            coordinates: places.iter().map(|one| named(&model, &one.name)).collect(),
+            inert: (0..places.len()).filter(is_inert).collect(),
+            inputs: inputs
+                .map(|(input, of)| (input.scalar, of.is_squared))
+                .collect(),
             parts,
             h: h / parts as f64,
         };
@@ -195,14 +184,8 @@ impl Horizon {
             ControlFlow::Continue(())
         })?;
         let mut inputs = vec![0.0; self.law.inputs.len()];
-        program.first_inputs(&found.x, &mut inputs, &self.squared());
+        program.first_inputs(&found.x, &mut inputs);
         Ok((inputs, found.status))
-    }
-
-    /// True of the inputs that act by their squares.
-    pub(super) fn squared(&self) -> Vec<bool> {
-        let inputs = self.law.inputs.iter();
-        inputs.map(|input| input.is_squared).collect()
     }
 
     pub(super) fn model(&self) -> &Model {
@@ -261,15 +244,11 @@ impl Horizon {
     }
 }
 
-/// Coordinates on which the constant disturbances of a law act.
-fn forced(model: &Model, coordinates: &[usize], law: &Law) -> Vec<usize> {
-    let named = |name: &str| {
-        let mut all = coordinates.iter();
-        let own = all.find(|&&i| model.variables.unknown(i).to_string() == name);
-        *own.expect("a coordinate of the law")
-    };
-    let on = law.lasting().iter();
-    on.map(|force| named(&force.name)).collect()
+/// The coordinate of a name in a law.
+fn named(model: &Model, name: &str) -> usize {
+    let coordinates = model.variables.with(Role::Coordinate);
+    let own = coordinates.iter().position(|one| one.name == name);
+    own.expect("a coordinate of the law")
 }
 
 /// Returns an error for what the horizon can not see ahead.

@@ -11,6 +11,7 @@
 //! Costs of deviations from a motion, with their derivatives.
 
 use crate::control::{Column, Row, Transcription};
+use crate::feedback::product;
 use crate::nlp::squares::{InSquares, Squares};
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
 use crate::workflow::receding::layout::{
@@ -162,9 +163,11 @@ impl<'m> Program<'m> {
     }
 
     /// Inputs of the first interval: V, N, N mm.
-    pub(super) fn first_inputs(&self, x: &[f64], out: &mut [f64], is_squared: &[bool]) {
-        let inputs = self.layout.driven[0].iter().zip(is_squared);
-        for (value, (input, is_squared)) in out.iter_mut().zip(inputs) {
+    pub(super) fn first_inputs(&self, x: &[f64], out: &mut [f64]) {
+        let inputs = self.layout.driven[0]
+            .iter()
+            .zip(&self.layout.steered.inputs);
+        for (value, (input, (_, is_squared))) in out.iter_mut().zip(inputs) {
             let [acting, ..] = input.reading(x[input.column]);
             *value = match is_squared {
                 true => acting.max(0.0).sqrt(),
@@ -230,10 +233,8 @@ impl<'m> Program<'m> {
         values[*count..].copy_from_slice(against);
         inputs.copy_from_slice(against);
         for (matrix, to) in [(rest, state), (slope, of_end)] {
-            for (row, to) in to.iter_mut().enumerate() {
-                let terms = values.iter().enumerate();
-                *to = terms.map(|(i, value)| matrix[(row, i)] * value).sum();
-            }
+            let rows = to.iter_mut().enumerate();
+            rows.for_each(|(row, to)| *to = product(matrix, row, values));
         }
     }
 
@@ -389,8 +390,7 @@ impl Program<'_> {
             let places = &self.reference.at(self.begin + k).places;
             for a in 0..n {
                 let (column, scale) = self.layout.coordinates[k * n + a];
-                let slope: f64 = (0..n).map(|b| places[(a, b)] * self.deviation[b]).sum();
-                grad[column] += scale * slope;
+                grad[column] += scale * product(places, a, &self.deviation[..n]);
                 let slope = self.layout.steered.rates[a] * self.step(x, k, a);
                 grad[column] -= scale * slope;
                 let (column, scale) = self.layout.coordinates[(k + 1) * n + a];
@@ -401,8 +401,7 @@ impl Program<'_> {
         let end = &self.reference.at(self.begin + last).end;
         for a in 0..self.deviation.len() {
             let (column, scale) = self.end_column(a);
-            let all = self.deviation.iter().enumerate();
-            let slope = all.map(|(b, d)| end[(a, b)] * d).sum::<f64>();
+            let slope = product(end, a, &self.deviation);
             grad[column] += scale * (slope + self.lasting.slope[a]);
         }
         for (k, inputs) in self.layout.driven.iter().enumerate() {
@@ -457,11 +456,6 @@ impl Program<'_> {
 
 /// dᵀ M d.
 fn square(d: &[f64], of: &nalgebra::DMatrix<f64>) -> f64 {
-    let row = |a: usize| {
-        d.iter()
-            .enumerate()
-            .map(move |(b, other)| of[(a, b)] * other)
-    };
     let rows = d.iter().enumerate();
-    rows.map(|(a, value)| value * row(a).sum::<f64>()).sum()
+    rows.map(|(a, value)| value * product(of, a, d)).sum()
 }

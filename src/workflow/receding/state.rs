@@ -128,9 +128,7 @@ impl<'h> Predicted<'h> {
             .correct(time, &self.deviation, &mut self.correction);
         let all = inputs.iter_mut().zip(&self.law.inputs);
         for (i, (to, input)) in all.enumerate() {
-            let (wanted, [low, high], _) = input.wanted(point.inputs[i], self.correction[i]);
-            let kept = wanted.clamp(low, high);
-            *to = if input.is_squared { kept.sqrt() } else { kept };
+            *to = input.corrected(point.inputs[i], self.correction[i]);
         }
     }
 }

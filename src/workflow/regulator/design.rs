@@ -283,7 +283,8 @@ impl<'a> Design<'a> {
         let mut out = vec![0.0; size];
         for (weight, &i) in out.iter_mut().zip(&self.coordinates) {
             if self.momenta.contains(&i) {
-                *weight = rate_weight(self.model, self.task, i, self.h);
+                let unit = Regulator::RATE_TIME / (self.unit(i) * self.h);
+                *weight = self.task.rates * unit.powi(2);
             }
         }
         out
@@ -291,7 +292,10 @@ impl<'a> Design<'a> {
 
     /// Deviation of a coordinate that costs as much as one of a mm.
     pub(super) fn unit(&self, i: usize) -> f64 {
-        unit(self.model, i)
+        match self.model.is_length(i) {
+            true => 1.0,
+            false => Regulator::DEGREE,
+        }
     }
 
     /// The part of Q that is of coordinates and markers.
@@ -358,19 +362,6 @@ pub(super) fn with_ones(of: &DMatrix<f64>, size: usize) -> DMatrix<f64> {
     let mut out = DMatrix::identity(size, size);
     out.view_mut((0, 0), of.shape()).copy_from(of);
     out
-}
-
-/// Deviation of a coordinate that costs as much as one of a mm.
-fn unit(model: &Model, i: usize) -> f64 {
-    match model.is_length(i) {
-        true => 1.0,
-        false => Regulator::DEGREE,
-    }
-}
-
-/// Weight of the rate of a coordinate, for its difference over an interval of h ms.
-pub(crate) fn rate_weight(model: &Model, task: &Regulator, i: usize, h: f64) -> f64 {
-    task.rates * (Regulator::RATE_TIME / (unit(model, i) * h)).powi(2)
 }
 
 /// Most iterations, and a change of all coordinates, relative to their typical sizes, that ends them.

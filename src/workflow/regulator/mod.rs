@@ -15,7 +15,6 @@ use crate::workflow::regulator::design::Design;
 use crate::workflow::regulator::law::Against;
 use crate::workflow::regulator::observer::reproduced;
 pub use design::Along;
-pub(crate) use design::rate_weight;
 pub(crate) use law::remembered;
 use nalgebra::DMatrix;
 pub(crate) use regulated::NOTHING_HOLDS;
