@@ -1,17 +1,15 @@
 //! Construction of the model of a system: presolve, coordinates, terms and constraints, measures.
 
 use crate::coordinates::{CoordinateMap, Reduced};
-use crate::energy::{CoordinateSpring, CoordinateStops};
-use crate::functional::{Element, Functional, Term};
+use crate::functional::{Functional, Term};
 use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Matrix;
 use crate::mesh::grid::Grid;
 use crate::model::analysis::{Analysis, Coordinates, ModelError};
 use crate::model::components::{Load, body, circuit, muscle};
-use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::Sought;
+use crate::model::construction::Construction;
 use crate::model::layout::internal::Internals;
-use crate::model::layout::named::Named;
 use crate::model::layout::solids::Solids;
 use crate::model::layout::variables::{Role, Size, Time, Variable, Variables};
 use crate::model::model::{Model, length};
@@ -20,20 +18,19 @@ use crate::model::presolve::loops::Loops;
 use crate::model::presolve::prescribed;
 use crate::model::presolve::presolved::{Presolved, clamp};
 use crate::model::presolve::tree_drifts;
-use crate::model::quantities::measures;
 use crate::model::quantities::measures::Measures;
 use crate::model::quantities::quantity::Quantity;
 use crate::model::system::joints::{JointReading, triad};
 use crate::model::system::{
-    Attachment, Body, Discretisation, Electrode, Fidelity, Glue, JointSpring, JointStops, Marker,
-    Muscle, Potential, Solid, Source, System,
+    Attachment, Body, Discretisation, Electrode, Fidelity, Glue, Marker, Muscle, Potential, Solid,
+    Source, System,
 };
-use crate::model::term_order::rank;
-use crate::model::terms::constraints;
+use crate::model::term_order::{rank, settle};
+use crate::model::terms::GRAVITY;
+use crate::model::terms::constraints::{Constraints, GLUE};
 use crate::model::terms::field_extent;
-use crate::model::terms::joint_constraints;
+use crate::model::terms::joint_forces;
 use crate::model::terms::loads;
-use crate::model::terms::{GRAVITY, LeftOut, Present, Terms, mid, settle};
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
 use std::sync::Arc;
@@ -100,6 +97,10 @@ impl Model {
             Internals::new(&system, &presolved, &analysis, coordinates, &graph, &blocks);
         let size = length(rest, &blocks.nodes);
         let loops = Loops::new(coordinates, rest, &graph, &reference, size)?;
+        let spans = spans(&system, &presolved, &reference, &mut vectors);
+        let sought = sought(
+            &analysis, &system, &presolved, &graph, &reference, &variables,
+        );
         let construction = Construction {
             system: &system,
             presolved: &presolved,
@@ -110,20 +111,22 @@ impl Model {
             internals: &internals,
             loops: &loops,
             graph: &graph,
+            variables: &variables,
+            spans: &spans,
+            sought,
         };
-        let spans = construction.spans(&mut vectors);
-        let (intervals, made) = construction.sums(&spans, &variables, &mut vectors);
+        let (intervals, made) = construction.sums(&mut vectors);
         let markers = construction.markers(&mut vectors);
-        let present = &made.present;
-        let measures =
-            construction.measures(&variables, &markers, &intervals, present, &mut vectors);
+        let is_glued = made.present.iter().any(|one| one.term == GLUE);
+        let measures = Measures::new(&construction, &markers, &intervals, is_glued, &mut vectors);
         let list = vectors.list();
         let map = construction.coordinate_map(list, made.multipliers.len());
         let scalars = variables.of(Time::Interval).len();
         let intervals = Functional::new(intervals, measures.intervals, list.len(), scalars);
         let count = made.multipliers.len();
         let instants = Functional::new(made.terms, measures.instants, list.len(), count);
-        construction.name_unknowns(&map, made.multipliers, &mut variables);
+        let unknowns = construction.unknowns(&map, made.multipliers);
+        unknowns.into_iter().for_each(|one| _ = variables.add(one));
         Ok(Self {
             coordinates,
             action: Reduced::new(map, intervals, instants),
@@ -187,6 +190,21 @@ fn poses(system: &System) -> Vec<Pose> {
     system.bodies.iter().map(Body::pose).collect()
 }
 
+/// Vector of the span of each muscle.
+fn spans(
+    system: &System,
+    presolved: &Presolved,
+    reference: &[Pose],
+    vectors: &mut Vectors,
+) -> Vec<usize> {
+    let carriers = presolved.carriers(reference);
+    let span = |m: &Muscle| {
+        let [from, to] = [&m.from, &m.to].map(|end| carriers.point(end));
+        vectors.index(MaterialVector::span(&from, &to))
+    };
+    system.muscles.iter().map(span).collect()
+}
+
 /// Sources whose inputs do something.
 fn acting(scene: &System, presolved: &Presolved, analysis: &Analysis) -> Vec<usize> {
     let charged = |block| field_extent::charged(scene, block, &analysis.zero_inputs);
@@ -215,115 +233,45 @@ fn reached(system: &System, analysis: &Analysis, inputs: &[usize]) -> Vec<usize>
     }
 }
 
-/// A scene with what remains of it, from which the parts of a model are constructed.
-struct Construction<'a> {
-    system: &'a System,
-    presolved: &'a Presolved,
-    analysis: &'a Analysis,
-    coordinates: Coordinates,
-    /// Poses of the bodies that remain.
-    reference: &'a [Pose],
-    blocks: &'a Solids,
-    internals: &'a Internals,
-    loops: &'a Loops,
-    graph: &'a Graph,
+/// The free parameters.
+fn sought(
+    analysis: &Analysis,
+    system: &System,
+    presolved: &Presolved,
+    graph: &Graph,
+    reference: &[Pose],
+    variables: &Variables,
+) -> Sought {
+    let parameters = &analysis.parameters;
+    let drifts = tree_drifts::of_tree(parameters, system, presolved, graph, reference);
+    Sought::new(parameters, variables.range(Role::Parameter).start, drifts)
 }
 
 impl Construction<'_> {
-    /// The free parameters.
-    fn sought(&self, variables: &Variables) -> Sought {
-        let parameters = &self.analysis.parameters;
-        let (system, presolved) = (self.system, self.presolved);
-        let drifts =
-            tree_drifts::of_tree(parameters, system, presolved, self.graph, self.reference);
-        Sought::new(parameters, variables.range(Role::Parameter).start, drifts)
-    }
-
-    /// Vector of the span of each muscle.
-    fn spans(&self, vectors: &mut Vectors) -> Vec<usize> {
-        let carriers = self.presolved.carriers(self.reference);
-        let span = |m: &Muscle| {
-            let [from, to] = [&m.from, &m.to].map(|end| carriers.point(end));
-            vectors.index(MaterialVector::span(&from, &to))
-        };
-        self.system.muscles.iter().map(span).collect()
-    }
-
     /// Terms of an interval in the order of the plan, and of an instant with the reasons for all.
-    fn sums(
-        &self,
-        spans: &[usize],
-        variables: &Variables,
-        vectors: &mut Vectors,
-    ) -> (Vec<Arc<dyn Term>>, constraints::Made) {
-        let (terms, mut present, mut left_out) = self.terms(spans, variables, vectors);
-        let made = self.constraints(vectors);
-        present.extend(made.present);
-        left_out.extend(made.left_out);
-        settle(&present, &mut left_out, rank);
-        let made = constraints::Made {
+    fn sums(&self, vectors: &mut Vectors) -> (Vec<Arc<dyn Term>>, Constraints) {
+        let mut terms = self.no_terms(vectors);
+        body::build(&self.presolved.system.bodies, self.reference, &mut terms);
+        body::build_sought(&self.system.bodies, &mut terms);
+        muscle::build(self, &mut terms);
+        circuit::build(self, &mut terms);
+        self.blocks.build(self.internals, &mut terms);
+        if self.system.gravity.is_none() {
+            terms.without(GRAVITY, "the scene names no gravity");
+        }
+        joint_forces::build_dampers(self, &mut terms);
+        joint_forces::build_springs(self, &mut terms);
+        loads::build(self, &mut terms);
+        self.system.components.build(&mut terms);
+        let (terms, present, left_out) = terms.finish(rank);
+        let mut constraints = Constraints {
             present,
             left_out,
-            ..made
+            ..Constraints::default()
         };
-        (terms.into_iter().map(Arc::from).collect(), made)
-    }
-
-    /// Terms of an interval in the order of the plan, and the reasons for those that are present and for those that are not.
-    fn terms(
-        &self,
-        spans: &[usize],
-        variables: &Variables,
-        vectors: &mut Vectors,
-    ) -> (Vec<Box<dyn Term>>, Vec<Present>, Vec<LeftOut>) {
-        let system = self.system;
-        let (presolved, reference, sought) =
-            (self.presolved, self.reference, self.sought(variables));
-        let mut terms = presolved.no_terms(reference, self.analysis, sought, variables, vectors);
-        body::build(&self.presolved.system.bodies, self.reference, &mut terms);
-        body::build_sought(&system.bodies, &mut terms);
-        muscle::build(&system.muscles, spans, self.internals, &mut terms);
-        circuit::build(&system.muscles, spans, self.internals, &mut terms);
-        circuit::build_electrodes(&self.blocks.circuits, self.internals, &mut terms);
-        self.blocks.build(self.internals, &mut terms);
-        let no_weight = match system.gravity {
-            None => "the scene names no gravity",
-            Some(_) => "nothing that moves has a mass",
-        };
-        terms.without(GRAVITY, no_weight);
-        joint_constraints::build_dampers(
-            self.presolved,
-            self.reference,
-            self.coordinates,
-            &mut terms,
-        );
-        add_joint_springs(self.presolved, self.internals, &mut terms);
-        loads::build(
-            system,
-            self.presolved,
-            self.internals,
-            self.blocks,
-            spans,
-            &mut terms,
-        );
-        system.components.build(&mut terms);
-        terms.finish(rank)
-    }
-
-    /// Constraints of an instant.
-    fn constraints(&self, vectors: &mut Vectors) -> constraints::Made {
-        match self.coordinates {
-            Coordinates::Reduced => constraints::Made::none(),
-            Coordinates::Redundant => constraints::Builder {
-                system: &self.presolved.system,
-                reference: self.reference,
-                vectors,
-                blocks: self.blocks,
-                internals: self.internals,
-                loops: self.loops,
-            }
-            .constraints(self.analysis.interval),
-        }
+        self.add_constraints(&mut constraints, vectors);
+        settle(&constraints.present, &mut constraints.left_out);
+        (terms, constraints)
     }
 
     /// Vector of each marker.
@@ -337,32 +285,6 @@ impl Construction<'_> {
         };
         let markers = self.presolved.system.markers.iter();
         markers.map(&mut vector).collect()
-    }
-
-    /// Measures of the quantities of the analysis, from variables, markers, terms of the intervals and what is present.
-    fn measures(
-        &self,
-        variables: &Variables,
-        markers: &[usize],
-        terms: &[Arc<dyn Term>],
-        present: &[Present],
-        vectors: &mut Vectors,
-    ) -> Measures {
-        let known = measures::Known {
-            system: self.system,
-            analysis: self.analysis,
-            presolved: self.presolved,
-            internals: self.internals,
-            reference: self.reference,
-            variables,
-            markers,
-            blocks: &self.blocks.list,
-            circuits: &self.blocks.circuits,
-            terms,
-            sought: self.sought(variables),
-            is_glued: present.iter().any(|one| one.term == constraints::GLUE),
-        };
-        Measures::new(self.analysis, &known, vectors)
     }
 
     /// The map from coordinates to material vectors.
@@ -380,27 +302,13 @@ impl Construction<'_> {
         }
     }
 
-    /// Adds the unknowns of an instant to the variables: coordinates, then multipliers.
-    fn name_unknowns(
-        &self,
-        map: &CoordinateMap,
-        multipliers: Vec<String>,
-        variables: &mut Variables,
-    ) {
-        let named = Named {
-            coordinates: self.coordinates,
-            system: &self.presolved.system,
-            graph: self.graph,
-            map,
-            nodes: &self.blocks.names,
-            solids: &self.blocks.list,
-            internals: &self.internals.list,
-        };
-        (0..map.coordinates).for_each(|i| _ = variables.add(named.coordinate(i)));
+    /// The unknowns of an instant: coordinates, then multipliers.
+    fn unknowns(&self, map: &CoordinateMap, multipliers: Vec<String>) -> Vec<Variable> {
+        let coordinates = (0..map.coordinates).map(|i| self.coordinate(map, i));
         let multiplier = |name| Variable::with_role(Role::Multiplier, name, Size::Unknown);
-        multipliers
-            .into_iter()
-            .for_each(|name| _ = variables.add(multiplier(name)));
+        coordinates
+            .chain(multipliers.into_iter().map(multiplier))
+            .collect()
     }
 }
 
@@ -419,51 +327,6 @@ pub(super) fn interval_variables(
         variables.add(Variable::parameter(parameter.name.clone()));
     }
     variables
-}
-
-const ELASTICITY: &str = "joint elasticity";
-const STOPS: &str = "joint stops";
-
-/// Springs and stops of the joints of a presolved system.
-pub(super) fn add_joint_springs(
-    presolved: &Presolved,
-    internals: &Internals,
-    terms: &mut Terms<'_>,
-) {
-    let joints = presolved.system.joints.iter().zip(&presolved.joints);
-    for (index, (joint, &of_scene)) in joints.enumerate() {
-        if let (Some(spring), Some(coordinate)) = (joint.spring, internals.joint(index)) {
-            let JointSpring { stiffness, rest } = spring;
-            let mut read = terms.sought().read();
-            let law = CoordinateSpring {
-                stiffness: read.constant(Constant::JointStiffness(of_scene), stiffness),
-                rest: read.constant(Constant::JointRest(of_scene), rest),
-            };
-            let coordinate = terms.vector(coordinate);
-            let element = read.element(law, [mid(coordinate)], []);
-            terms.add_law(ELASTICITY, "stiffness of", &joint.name, element);
-        }
-        if let (Some(stops), Some(coordinate)) = (joint.stops, internals.joint(index)) {
-            let JointStops {
-                stiffness,
-                at,
-                smoothing,
-            } = stops;
-            let energy = CoordinateStops {
-                stiffness,
-                at,
-                smoothing,
-            };
-            let element = Element {
-                energy,
-                vectors: [mid(terms.vector(coordinate))],
-                scalars: [],
-            };
-            terms.add(STOPS, "stops of", &joint.name, element);
-        }
-    }
-    terms.without(ELASTICITY, "no joint that moves names a stiffness");
-    terms.without(STOPS, "no joint that moves names stops");
 }
 
 /// All blocks, those of the scene taken out of the presolved system; every node of a muscle that nothing moves is held.

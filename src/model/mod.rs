@@ -4,6 +4,7 @@ mod analysis;
 mod build;
 pub mod components;
 mod constants;
+mod construction;
 mod layout;
 #[expect(clippy::module_inception, reason = "the file of the type of that name")]
 mod model;
@@ -43,5 +44,5 @@ pub use system::check::{MOST_ELEMENTS, SystemError, check_axes, check_elements};
 pub use system::joints::{JointReading, Prescribed, Screw, nearest_turn};
 pub use system::maxwell::{MOST_BRANCHES, MaxwellBranch, MaxwellBranches, NO_BRANCHES, Response};
 pub use system::{System, VACUUM_PERMITTIVITY};
-pub use terms::joint_constraints::DAMPING as JOINT_DAMPING;
+pub use terms::joint_forces::DAMPING as JOINT_DAMPING;
 pub use terms::{LeftOut, Present, Terms, mid, rate};

@@ -1,65 +1,93 @@
-//! Order of the terms in the sum of the action: inertia, potentials, virtual works, constraints. Terms of other crates follow.
+//! The terms of the library in the order of the sum of the action: inertia, potentials, virtual works, constraints. Terms of other crates follow.
 
 use crate::model::components::{DISSIPATIONS, POTENTIALS};
-use crate::model::terms::GRAVITY;
+use crate::model::terms::{GRAVITY, LeftOut, Present};
+
+/// A term: its name, and the reason why it is absent where the scene gives no other one.
+type Row = (&'static str, &'static str);
+
+const NO_MUSCLE: &str = "no lumped muscle";
+const NO_MUSCLE_BY_LAW: &str = "no lumped muscle names a law of elasticity";
+const NO_MUSCLE_BRANCH: &str = "no lumped muscle that moves names a Maxwell branch";
+const NO_BLOCK: &str = "no elastic block";
+const NO_BLOCK_BY_LAW: &str = "no elastic block that moves names a law of elasticity";
+const NO_BLOCK_BRANCH: &str = "no elastic block that moves names a Maxwell branch";
+const NO_CIRCUIT: &str = "no muscle or electrode names a circuit with a resistor";
+const NO_WIRED_ELECTRODE: &str = "no electrode of finite elements names a circuit with a resistor";
+const NO_CHARGE: &str = "no charge of a lumped muscle is given, or flows through a resistor";
+const NO_LOAD: &str = "no load of its kind";
+const NO_BODY: &str = "no body that moves";
+const NO_END: &str = "no joint that calls for one";
 
 /// Inertia and potentials before those of components.
-const FIRST: [&str; 18] = [
-    "body inertia",
-    "muscle inertia",
-    "block inertia",
-    "section inertia",
-    GRAVITY,
-    "block elasticity",
-    "block electroelasticity",
-    "general block elasticity",
-    "general block electroelasticity",
-    "muscle elasticity",
-    "muscle electroelasticity",
-    "general muscle elasticity",
-    "general muscle electroelasticity",
-    "muscle charges",
-    "maxwell elasticity",
-    "block maxwell elasticity",
-    "joint elasticity",
-    "joint stops",
+const FIRST: [Row; 18] = [
+    ("body inertia", NO_BODY),
+    ("muscle inertia", NO_MUSCLE),
+    ("block inertia", NO_BLOCK),
+    ("section inertia", NO_MUSCLE),
+    (GRAVITY, "nothing that moves has a mass"),
+    ("block elasticity", NO_BLOCK),
+    ("block electroelasticity", NO_BLOCK),
+    ("general block elasticity", NO_BLOCK_BY_LAW),
+    ("general block electroelasticity", NO_BLOCK_BY_LAW),
+    ("muscle elasticity", NO_MUSCLE),
+    ("muscle electroelasticity", NO_MUSCLE),
+    ("general muscle elasticity", NO_MUSCLE_BY_LAW),
+    ("general muscle electroelasticity", NO_MUSCLE_BY_LAW),
+    ("muscle charges", NO_CHARGE),
+    ("maxwell elasticity", NO_MUSCLE_BRANCH),
+    ("block maxwell elasticity", NO_BLOCK_BRANCH),
+    ("joint elasticity", "no joint that moves names a stiffness"),
+    ("joint stops", "no joint that moves names stops"),
 ];
 
 /// Terms between the potentials of components and their dissipation.
-const MIDDLE: [&str; 11] = [
-    "loads",
-    "surface charges",
-    "electrode charges",
-    "circuit sources",
-    "following loads",
-    "block viscosity",
-    "muscle viscosity",
-    "maxwell viscosity",
-    "block maxwell viscosity",
-    "circuit resistance",
-    "joint damping",
+const MIDDLE: [Row; 11] = [
+    ("loads", NO_LOAD),
+    ("surface charges", NO_LOAD),
+    ("electrode charges", NO_WIRED_ELECTRODE),
+    ("circuit sources", NO_CIRCUIT),
+    ("following loads", NO_LOAD),
+    ("block viscosity", NO_BLOCK),
+    ("muscle viscosity", NO_MUSCLE),
+    ("maxwell viscosity", NO_MUSCLE_BRANCH),
+    ("block maxwell viscosity", NO_BLOCK_BRANCH),
+    ("circuit resistance", NO_CIRCUIT),
+    ("joint damping", "no joint that moves names a damping"),
 ];
 
 /// Constraints.
-const LAST: [&str; 5] = [
-    "rigid bodies",
-    "joint directions",
-    "joint points",
-    "joint coordinates",
-    "glue",
+const LAST: [Row; 5] = [
+    ("rigid bodies", NO_BODY),
+    ("joint directions", NO_END),
+    ("joint points", NO_END),
+    ("joint coordinates", "no joint names a stiffness"),
+    ("glue", "no node is glued to a body that moves"),
 ];
 
 /// Names of the terms of the library, in the order of the sum.
 pub fn terms() -> impl Iterator<Item = &'static str> {
     let of_components =
         |names: &'static [&[&'static str]]| names.iter().copied().flatten().copied();
-    let potentials = FIRST.into_iter().chain(of_components(POTENTIALS));
-    let works = MIDDLE.into_iter().chain(of_components(DISSIPATIONS));
-    potentials.chain(works).chain(LAST)
+    let [first, middle, last] =
+        [&FIRST[..], &MIDDLE, &LAST].map(|rows| rows.iter().map(|row| row.0));
+    let potentials = first.chain(of_components(POTENTIALS));
+    let works = middle.chain(of_components(DISSIPATIONS));
+    potentials.chain(works).chain(last)
 }
 
 /// Place of a term in the sum.
 pub(super) fn rank(term: &str) -> usize {
     let place = terms().position(|name| name == term);
     place.unwrap_or(usize::MAX)
+}
+
+/// Keeps the first reason for each term that is not there, in the order of the sum.
+pub(super) fn settle(present: &[Present], left_out: &mut Vec<LeftOut>) {
+    let rows = FIRST.iter().chain(&MIDDLE).chain(&LAST);
+    left_out.extend(rows.map(|&(term, why)| LeftOut { term, why }));
+    let is_there = |term| present.iter().any(|p| p.term == term);
+    left_out.retain(|l| !is_there(l.term));
+    left_out.sort_by_key(|l| rank(l.term));
+    left_out.dedup_by_key(|l| l.term);
 }

@@ -14,9 +14,6 @@ const INERTIA: &str = "body inertia";
 /// Inertia and weight of the bodies that are solved for: the mass at the centre, and on each director dᵢ the Euler inertia
 /// E_i = ½ (J_j + J_k − J_i).
 pub(in crate::model) fn build(bodies: &[Body], reference: &[Pose], terms: &mut Terms<'_>) {
-    if bodies.is_empty() {
-        terms.without(INERTIA, "no body that moves");
-    }
     for (b, body) in bodies.iter().enumerate() {
         let centre = MaterialVector::point(Some(b), &body.centre, reference);
         terms.weigh(&centre, body.mass);

@@ -7,6 +7,7 @@ use crate::model::components::muscle::{CHARGES, constants};
 use crate::model::components::muscle_constants::capacitance;
 use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::Read;
+use crate::model::construction::Construction;
 use crate::model::layout::internal::{InternalKind, Internals};
 use crate::model::system::Muscle;
 use crate::model::system::electrode_circuits::ElectrodeCircuit;
@@ -15,24 +16,20 @@ use nalgebra::Vector3;
 
 pub(super) const SOURCES: &str = "circuit sources";
 const RESISTANCE: &str = "circuit resistance";
+const ELECTRODE_CHARGES: &str = "electrode charges";
 /// Reason of the terms, before the names of their parts.
 const WHY: &str = "circuit of";
 
-/// Terms of the circuits of the muscles of a scene; `spans` are the vectors of their spans.
-pub(in crate::model) fn build(
-    muscles: &[Muscle],
-    spans: &[usize],
-    internals: &Internals,
-    terms: &mut Terms<'_>,
-) {
-    for (m, (muscle, &span)) in muscles.iter().zip(spans).enumerate() {
-        circuit(muscle, m, span, internals, terms);
+/// Terms of the circuits of the muscles of a scene, and of electrodes.
+pub(in crate::model) fn build(of: &Construction<'_>, terms: &mut Terms<'_>) {
+    for (m, (muscle, &span)) in of.system.muscles.iter().zip(of.spans).enumerate() {
+        circuit(muscle, m, span, of.internals, terms);
     }
-    let none = match terms.is_of_motion() {
-        true => "no muscle or electrode names a circuit with a resistor",
-        false => "at rest no charge flows",
-    };
-    terms.without_each([SOURCES, RESISTANCE], none);
+    build_electrodes(&of.blocks.circuits, of.internals, terms);
+    if !terms.is_of_motion() {
+        let flowing = [SOURCES, RESISTANCE, ELECTRODE_CHARGES];
+        terms.without_each(flowing, "at rest no charge flows");
+    }
 }
 
 /// The electric energy of a charge, which is an internal coordinate, the source, and the resistor as its damper.
@@ -119,14 +116,7 @@ pub(super) fn add_circuit(
     terms.add_law(RESISTANCE, WHY, name, element);
 }
 
-const ELECTRODE_CHARGES: &str = "electrode charges";
-
-/// Terms of the circuits of electrodes.
-pub(in crate::model) fn build_electrodes(
-    circuits: &[ElectrodeCircuit],
-    internals: &Internals,
-    terms: &mut Terms<'_>,
-) {
+fn build_electrodes(circuits: &[ElectrodeCircuit], internals: &Internals, terms: &mut Terms<'_>) {
     for of in circuits {
         let Some(charge) = internals.vector(InternalKind::Charge(of.source)) else {
             continue;
@@ -150,11 +140,4 @@ pub(in crate::model) fn build_electrodes(
         };
         add_circuit(&of.name, charge, Some(of.input), &wires, terms);
     }
-    terms.without(
-        ELECTRODE_CHARGES,
-        match terms.is_of_motion() {
-            true => "no electrode of finite elements names a circuit with a resistor",
-            false => "at rest no charge flows",
-        },
-    );
 }

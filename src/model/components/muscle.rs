@@ -5,6 +5,7 @@ use crate::functional::Mass;
 use crate::kinematics::MaterialVector;
 use crate::math::{Derivatives, Local, Vector};
 use crate::model::components::muscle_constants::MuscleConstants;
+use crate::model::construction::Construction;
 use crate::model::layout::internal::{InternalKind, Internals};
 use crate::model::system::{Fidelity, Muscle};
 use crate::model::terms::{GRAVITY, Terms, UNRELAXED, mid, rate};
@@ -28,14 +29,9 @@ const MIDDLE: [f64; 2] = [0.5; 2];
 /// Electric energy of muscles whose charge is given, or flows through a circuit.
 pub(in crate::model) const CHARGES: &str = "muscle charges";
 
-/// Terms of the muscles of a scene, of which those of finite elements are blocks; `spans` are the vectors of their spans.
-pub(in crate::model) fn build(
-    muscles: &[Muscle],
-    spans: &[usize],
-    internals: &Internals,
-    terms: &mut Terms<'_>,
-) {
-    for (m, (muscle, &span)) in muscles.iter().zip(spans).enumerate() {
+/// Terms of the muscles of a scene, of which those of finite elements are blocks.
+pub(in crate::model) fn build(of: &Construction<'_>, terms: &mut Terms<'_>) {
+    for (m, (muscle, &span)) in of.system.muscles.iter().zip(of.spans).enumerate() {
         if muscle.fidelity == Fidelity::Lumped {
             match terms.is_of_motion() {
                 true => lumped(muscle, m, span, terms),
@@ -43,20 +39,11 @@ pub(in crate::model) fn build(
             }
             match terms.is_instantaneous() {
                 true => unrelaxed(muscle, m, span, terms),
-                false => relaxation(muscle, m, span, internals, terms),
+                false => relaxation(muscle, m, span, of.internals, terms),
             }
         }
     }
-    terms.without_branches(
-        [MAXWELL_ELASTICITY, MAXWELL_VISCOSITY],
-        "no lumped muscle that moves names a Maxwell branch",
-    );
-    terms.without_each(GENERAL, "no lumped muscle names a law of elasticity");
-    // What no muscle has said.
-    terms.without_each(
-        [INERTIA, SECTION, ELASTICITY, ELECTROELASTICITY, VISCOSITY],
-        "no lumped muscle",
-    );
+    terms.without_branches([MAXWELL_ELASTICITY, MAXWELL_VISCOSITY]);
 }
 
 /// Between two points that do not move nothing is left of a muscle without voltage.

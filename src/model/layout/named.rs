@@ -3,8 +3,8 @@
 use crate::coordinates::CoordinateMap;
 use crate::math::Vector;
 use crate::model::analysis::Coordinates;
+use crate::model::construction::Construction;
 use crate::model::layout::internal::Internal;
-use crate::model::layout::solid_block::SolidBlock;
 use crate::model::layout::variables::{Role, Size, Variable};
 use crate::model::model::Model;
 use crate::model::presolve::graph::Graph;
@@ -14,32 +14,19 @@ use crate::model::system::{JointKind, System};
 /// Part of a unit vector along an axis of the ground frame from which on it is called by its letter.
 const ALIGNED: f64 = 1.0 - 1e-9;
 
-/// Data from which coordinates get their names.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Named<'a> {
-    pub(crate) coordinates: Coordinates,
-    /// The presolved system.
-    pub(crate) system: &'a System,
-    pub(crate) graph: &'a Graph,
-    pub(crate) map: &'a CoordinateMap,
-    /// Block and node of the mesh of each node with coordinates.
-    pub(crate) nodes: &'a [(usize, usize)],
-    pub(crate) solids: &'a [SolidBlock],
-    pub(crate) internals: &'a [Internal],
-}
-
-impl Named<'_> {
-    /// Coordinate `i` of an instant.
-    pub(crate) fn coordinate(&self, i: usize) -> Variable {
-        let internal = i.checked_sub(self.map.internal().start);
-        if let Some(Internal { name, size, .. }) = internal.map(|index| &self.internals[index]) {
+impl Construction<'_> {
+    /// Coordinate `i` of an instant with a map.
+    pub(crate) fn coordinate(&self, map: &CoordinateMap, i: usize) -> Variable {
+        let internal = i.checked_sub(map.internal().start);
+        let internal = internal.map(|index| &self.internals.list[index]);
+        if let Some(Internal { name, size, .. }) = internal {
             return Variable::with_role(Role::Coordinate, name.clone(), *size);
         }
-        let (name, size) = match i.checked_sub(self.map.of_bodies) {
+        let (name, size) = match i.checked_sub(map.of_bodies) {
             Some(place) => {
-                let (node, axis) = self.map.of_nodes[place];
-                let (block, node) = self.nodes[node];
-                let name = &self.solids[block].solid.name;
+                let (node, axis) = map.of_nodes[place];
+                let (block, node) = self.blocks.names[node];
+                let name = &self.blocks.list[block].solid.name;
                 let axis = ["x", "y", "z"][axis];
                 (format!("{axis} of node {node} of {name}"), Size::Length)
             }
@@ -56,7 +43,7 @@ impl Named<'_> {
                     screw,
                     number,
                     is_only,
-                } = freedom(self.system, self.graph, i);
+                } = freedom(&self.presolved.system, self.graph, i);
                 let (name, size) = match screw {
                     Screw::Turn(axis) => (
                         format!("rotation about {}", axis_name(&axis, number)),
@@ -75,7 +62,10 @@ impl Named<'_> {
             Coordinates::Redundant => {
                 let part = ["centre", "d1", "d2", "d3"][i % 12 / 3];
                 let axis = ["x", "y", "z"][i % 3];
-                let name = format!("{} {part}.{axis}", self.system.bodies[i / 12].name);
+                let name = format!(
+                    "{} {part}.{axis}",
+                    self.presolved.system.bodies[i / 12].name
+                );
                 let size = if i % 12 < 3 { Size::Length } else { Size::One };
                 (name, size)
             }

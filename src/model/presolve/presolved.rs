@@ -3,17 +3,15 @@
 //!
 //! The muscles, blocks and markers of the presolved system are those of the scene in its order; bodies and joints are fewer.
 
-use crate::kinematics::{Pose, Vectors};
+use crate::kinematics::Pose;
 use crate::math::{DisjointSets, Matrix, Vector};
 use crate::model::analysis::Analysis;
-use crate::model::constants::free_parameters::Sought;
-use crate::model::layout::variables::Variables;
 use crate::model::presolve::immobile::{self, Immobile};
 use crate::model::system::bodies::eigen;
 use crate::model::system::{
     Body, Electrode, Joint, JointKind, Material, Muscle, Potential, Shape, Solid, Support, System,
 };
-use crate::model::terms::{Carriers, Terms};
+use crate::model::terms::Carriers;
 
 /// Location of a body of the scene in the presolved system.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -313,21 +311,5 @@ impl Presolved {
         let bodies = 0..self.bodies.len();
         let of = bodies.map(|body| self.carrier(Some(body))).collect();
         Carriers { of, reference }
-    }
-
-    /// No terms, to which those of parts are added.
-    pub(crate) fn no_terms<'a>(
-        &self,
-        reference: &'a [Pose],
-        analysis: &Analysis,
-        sought: Sought,
-        variables: &'a Variables,
-        vectors: &'a mut Vectors,
-    ) -> Terms<'a> {
-        let (carriers, gravity) = (self.carriers(reference), self.system.gravity);
-        let (of_motion, response) = (analysis.of_motion, analysis.response);
-        Terms::new(
-            carriers, gravity, of_motion, response, sought, variables, vectors,
-        )
     }
 }

@@ -73,7 +73,7 @@ impl<'k> Reading<'k, '_> {
 
     /// The electrodes behind a resistor that a source charges.
     fn electrodes(&self, source: usize) -> Option<&'k ElectrodeCircuit> {
-        let mut circuits = self.known.circuits.iter();
+        let mut circuits = self.known.blocks.circuits.iter();
         circuits.find(|of| of.source == source)
     }
 

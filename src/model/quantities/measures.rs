@@ -8,23 +8,18 @@ use crate::energy::{
 use crate::functional::{
     Curved, Element, ElementField, Group, Kernel, LawElement, Measure, Stencil, Term, VectorArg,
 };
-use crate::kinematics::{MaterialVector, Pose, Vectors};
+use crate::kinematics::{MaterialVector, Vectors};
 use crate::math::{Jet, Number, Vector};
-use crate::model::analysis::Analysis;
 use crate::model::components::capacitance;
 use crate::model::components::muscle_constants::{MuscleConstants, charge_field};
 use crate::model::constants::constant::Constant;
-use crate::model::constants::free_parameters::{MovedPoints, Read, Sought};
-use crate::model::layout::internal::Internals;
-use crate::model::layout::solid_block::SolidBlock;
-use crate::model::layout::variables::{Role, Variables};
-use crate::model::presolve::presolved::Presolved;
+use crate::model::constants::free_parameters::{MovedPoints, Read};
+use crate::model::construction::Construction;
+use crate::model::layout::variables::Role;
 use crate::model::quantities::quantity::Quantity;
 use crate::model::quantities::what::{At, FieldPlace, Of, Pulling, Region, What};
-use crate::model::system::electrode_circuits::ElectrodeCircuit;
+use crate::model::system::Amount;
 use crate::model::system::joints::{JointCoordinate, JointReading};
-use crate::model::system::{Amount, System};
-use crate::model::terms::Terms;
 use nalgebra::SVector;
 use std::sync::Arc;
 
@@ -40,31 +35,17 @@ pub(crate) struct Measures {
     pub(crate) places: Vec<Option<usize>>,
 }
 
-/// Data on which quantities are measured.
-#[derive(Clone, Debug)]
-pub(crate) struct Known<'a> {
-    pub(crate) system: &'a System,
-    pub(crate) analysis: &'a Analysis,
-    pub(crate) presolved: &'a Presolved,
-    pub(crate) internals: &'a Internals,
-    pub(crate) reference: &'a [Pose],
-    pub(crate) variables: &'a Variables,
-    /// Vector of each marker.
-    pub(crate) markers: &'a [usize],
-    pub(crate) blocks: &'a [SolidBlock],
-    pub(crate) circuits: &'a [ElectrodeCircuit],
-    /// Terms of the intervals.
-    pub(crate) terms: &'a [Arc<dyn Term>],
-    /// The free parameters.
-    pub(crate) sought: Sought,
-    /// True if constraints glue blocks to bodies, so that terms do not tell the forces on bodies.
-    pub(crate) is_glued: bool,
-}
-
 impl Measures {
-    /// The measures of the quantities of an analysis.
-    pub(crate) fn new(analysis: &Analysis, known: &Known<'_>, vectors: &mut Vectors) -> Self {
-        let mut out = Self::default();
+    /// The measures of the quantities of an analysis, with the vector of each marker, the terms of the intervals, and true where constraints
+    /// glue blocks to bodies.
+    pub(crate) fn new(
+        known: &Construction<'_>,
+        markers: &[usize],
+        terms: &[Arc<dyn Term>],
+        is_glued: bool,
+        vectors: &mut Vectors,
+    ) -> Self {
+        let (mut out, analysis) = (Self::default(), known.analysis);
         for (index, quantity) in analysis.quantities.iter().enumerate() {
             let list = match quantity.is_of_intervals() {
                 true => &mut out.intervals,
@@ -72,6 +53,9 @@ impl Measures {
             };
             let mut reading = Reading {
                 known,
+                markers,
+                terms,
+                is_glued,
                 quantity,
                 shape: match analysis.curved.contains(&index) {
                     true => Shape::Curved,
@@ -87,19 +71,15 @@ impl Measures {
     }
 }
 
-impl Known<'_> {
-    /// No terms, to which those of a part are added.
-    pub(crate) fn no_terms<'v>(&'v self, vectors: &'v mut Vectors) -> Terms<'v> {
-        let (sought, variables) = (self.sought.clone(), self.variables);
-        let (reference, analysis) = (self.reference, self.analysis);
-        self.presolved
-            .no_terms(reference, analysis, sought, variables, vectors)
-    }
-}
-
 /// A quantity whose measure is made.
 pub(super) struct Reading<'k, 'v> {
-    pub(super) known: &'k Known<'k>,
+    pub(super) known: &'k Construction<'k>,
+    /// Vector of each marker.
+    markers: &'k [usize],
+    /// Terms of the intervals.
+    pub(super) terms: &'k [Arc<dyn Term>],
+    /// True if constraints glue blocks to bodies, so that terms do not tell the forces on bodies.
+    pub(super) is_glued: bool,
     pub(super) quantity: &'k Quantity,
     pub(super) shape: Shape,
     pub(super) vectors: &'v mut Vectors,
@@ -280,7 +260,7 @@ impl<'k> Reading<'k, '_> {
 
     /// Squared field of an element of a block, at its centre or at a Gauss point, over the one of the unit.
     fn element_field(&self, block: usize, element: usize, point: Option<usize>) -> Made {
-        let block = &self.known.blocks[block];
+        let block = &self.known.blocks.list[block];
         if !block.is_dielectric[element] {
             return None;
         }
@@ -398,7 +378,7 @@ impl Reading<'_, '_> {
                 let body = self.known.presolved.carrier(plane.body);
                 let normal = MaterialVector::direction(body, &plane.normal, reference);
                 let foot = MaterialVector::point(body, &plane.point, reference);
-                let place = list[self.known.markers[marker]].clone();
+                let place = list[self.markers[marker]].clone();
                 let read = [normal, MaterialVector::span(&foot, &place)];
                 let read = read.map(|vector| self.vectors.index(vector));
                 self.instant(Projection, read)
@@ -409,7 +389,7 @@ impl Reading<'_, '_> {
 
     /// Measure of a law of the place or velocity of a marker, with the parameters that move it in the intervals.
     fn marker<L: Law<3>>(&mut self, marker: usize, law: L) -> Made {
-        let vector = self.known.markers[marker];
+        let vector = self.markers[marker];
         let read = match (&self.quantity.what, self.quantity.of) {
             (What::Speed(_), _) => Stencil::Rate.of(vector),
             (_, Of::Step) => Stencil::Difference.of(vector),

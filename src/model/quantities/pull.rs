@@ -14,7 +14,7 @@ use crate::model::quantities::measures::{Made, Reading, Shape};
 use crate::model::quantities::what::{Pulling, Reaction};
 use crate::model::system::Fidelity;
 use crate::model::term_order::rank;
-use crate::model::terms::joint_constraints::DAMPING;
+use crate::model::terms::joint_forces::DAMPING;
 use std::sync::Arc;
 
 impl Reading<'_, '_> {
@@ -44,7 +44,6 @@ impl Reading<'_, '_> {
             }
         };
         let (terms, ..) = terms.finish(rank);
-        let terms: Vec<Arc<dyn Term>> = terms.into_iter().map(Arc::from).collect();
         let pulling = terms.iter().filter(|term| term.kind() != TermKind::Kinetic);
         let pulling: Vec<_> = pulling.collect();
         let displacement = Displacement::Shortening { span, factor };
@@ -66,7 +65,7 @@ impl Reading<'_, '_> {
     /// Impulse of a joint along a direction, or its moment about the joint, at the start of an interval, or minus that at its end.
     pub(super) fn reaction(&mut self, joint: usize, of: Reaction, along: Vector) -> Made {
         let known = self.known;
-        let kept = known.presolved.joint(joint).filter(|_| !known.is_glued)?;
+        let kept = known.presolved.joint(joint).filter(|_| !self.is_glued)?;
         let section = JointSection::new(known.system, known.presolved, known.reference, kept)?;
         let (side, axis) = match self.quantity.at.stencil() {
             Stencil::Next => (1, -along),
@@ -84,7 +83,7 @@ impl Reading<'_, '_> {
                 Displacement::Turn { axis, turns }
             }
         };
-        let terms = known.terms.iter().filter(|term| term.name() != DAMPING);
+        let terms = self.terms.iter().filter(|term| term.name() != DAMPING);
         let terms: Vec<_> = terms.collect();
         Some(self.impulse(&terms, displacement, side))
     }

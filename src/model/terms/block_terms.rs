@@ -47,12 +47,11 @@ impl Solids {
         self.add_elements(terms);
         self.add_viscosity(terms);
         self.add_branches(internals, terms);
-        let [elasticity, electroelasticity] = NEO_HOOKEAN;
-        let none = match self.list.is_empty() {
-            true => "no elastic block",
-            false => "no elastic block that moves",
-        };
-        terms.without_each([INERTIA, elasticity, electroelasticity, VISCOSITY], none);
+        if !self.list.is_empty() {
+            let [elasticity, electroelasticity] = NEO_HOOKEAN;
+            let all = [INERTIA, elasticity, electroelasticity, VISCOSITY];
+            terms.without_each(all, "no elastic block that moves");
+        }
     }
 
     /// Elastic and dielectric elements.
@@ -67,10 +66,6 @@ impl Solids {
                 }
             }
         }
-        terms.without_each(
-            GENERAL,
-            "no elastic block that moves names a law of elasticity",
-        );
     }
 
     /// Viscous elements.
@@ -270,10 +265,7 @@ impl Solids {
                 }
             }
         }
-        terms.without_branches(
-            MAXWELL,
-            "no elastic block that moves names a Maxwell branch",
-        );
+        terms.without_branches(MAXWELL);
     }
 }
 

@@ -2,12 +2,12 @@
 
 use crate::energy::{Coincidence, JointAngle, JointDisplacement, Orthogonality};
 use crate::functional::{Element, Group, Kernel, Stencil, Term};
-use crate::kinematics::{MaterialVector, Pose, Vectors};
-use crate::model::layout::internal::{InternalKind, Internals};
-use crate::model::layout::solids::Solids;
-use crate::model::presolve::loops::Loops;
+use crate::kinematics::{MaterialVector, Vectors};
+use crate::model::analysis::Coordinates;
+use crate::model::construction::Construction;
+use crate::model::layout::internal::InternalKind;
+use crate::model::system::Glue;
 use crate::model::system::joints::{JointCoordinate, JointReading};
-use crate::model::system::{Glue, System};
 use crate::model::terms::joint_constraints::{JointConstraints, Product};
 use crate::model::terms::{LeftOut, Present, note};
 use std::mem::take;
@@ -21,52 +21,26 @@ const COORDINATES: &str = "joint coordinates";
 /// Term of the nodes that constraints glue to bodies.
 pub(crate) const GLUE: &str = "glue";
 
-/// Makes the constraints of a system.
-pub(crate) struct Builder<'a> {
-    pub(crate) system: &'a System,
-    pub(crate) reference: &'a [Pose],
-    pub(crate) vectors: &'a mut Vectors,
-    /// Elastic blocks.
-    pub(crate) blocks: &'a Solids,
-    /// Internal coordinates, those of joints among them.
-    pub(crate) internals: &'a Internals,
-    /// Closing constraints that loops leave out.
-    pub(crate) loops: &'a Loops,
-}
-
 /// Constraints collected for the action, with the names of their multipliers.
 #[derive(Default)]
-pub(crate) struct Made {
+pub(crate) struct Constraints {
     pub(crate) terms: Vec<Arc<dyn Term>>,
     pub(crate) multipliers: Vec<String>,
     pub(crate) present: Vec<Present>,
     pub(crate) left_out: Vec<LeftOut>,
 }
 
-impl Made {
-    /// No constraints: reduced coordinates leave none.
-    pub(crate) fn none() -> Self {
-        let why = "reduced coordinates leave no constraint";
-        let left_out =
-            [RIGID, DIRECTIONS, POINTS, COORDINATES, GLUE].map(|term| LeftOut { term, why });
-        Self {
-            left_out: left_out.to_vec(),
-            ..Self::default()
-        }
-    }
-
-    /// Adds a term of elements for the parts of the scene that are named; without elements it is left out.
+impl Constraints {
+    /// Adds a term of elements for the parts of the scene that are named, if there are any.
     fn add<K: Kernel>(
         &mut self,
         term: &'static str,
         scale: f64,
         elements: Vec<K>,
         reason: (&'static str, &[&str]),
-        otherwise: &'static str,
     ) {
         if elements.is_empty() {
-            let why = otherwise;
-            return self.left_out.push(LeftOut { term, why });
+            return;
         }
         let (why, names) = reason;
         for name in names {
@@ -77,11 +51,17 @@ impl Made {
     }
 }
 
-impl Builder<'_> {
-    /// Constraints of redundant coordinates, `−h₀ λ·g`.
-    pub(crate) fn constraints(&mut self, h0: f64) -> Made {
-        let mut all = Constraints::default();
-        for (b, body) in self.system.bodies.iter().enumerate() {
+impl Construction<'_> {
+    /// Adds the constraints of an instant, `−h₀ λ·g`, which redundant coordinates have.
+    pub(crate) fn add_constraints(&self, made: &mut Constraints, vectors: &mut Vectors) {
+        if self.coordinates == Coordinates::Reduced {
+            let why = "reduced coordinates leave no constraint";
+            let none = [RIGID, DIRECTIONS, POINTS, COORDINATES, GLUE];
+            return made.left_out.extend(none.map(|term| LeftOut { term, why }));
+        }
+        let (mut all, h0) = (Elements::default(), self.analysis.interval);
+        let system = &self.presolved.system;
+        for (b, body) in system.bodies.iter().enumerate() {
             let axis = |i: usize| {
                 MaterialVector::direction(Some(b), &body.directors.column(i).into(), self.reference)
             };
@@ -90,20 +70,20 @@ impl Builder<'_> {
                 for j in i..3 {
                     let (product, factor) = if i == j { (1.0, 0.5) } else { (0.0, 1.0) };
                     let name = format!("{} d{}.d{}", body.name, i + 1, j + 1);
-                    all.dot(self.vectors, name, &d[i], &d[j], product, factor);
+                    all.dot(vectors, name, &d[i], &d[j], product, factor);
                 }
             }
         }
         let rigid = take(&mut all.dots);
-        self.joints(&mut all);
+        self.joints(vectors, &mut all);
         let points = take(&mut all.points);
         for (span, name) in &self.blocks.ties {
-            all.point(self.vectors, name, span.clone());
+            all.point(vectors, name, span.clone());
         }
-        self.joint_coordinates(&mut all);
-        let bodies = self.system.bodies.iter().map(|body| body.name.as_str());
+        self.joint_coordinates(vectors, &mut all);
+        let bodies = system.bodies.iter().map(|body| body.name.as_str());
         let bodies: Vec<&str> = bodies.collect();
-        let named = self.system.joints.iter().map(|joint| joint.name.as_str());
+        let named = system.joints.iter().map(|joint| joint.name.as_str());
         let named: Vec<&str> = named.collect();
         let is_glued = |glue: &Glue| glue.body.is_some();
         let glued = self.blocks.list.iter().filter(|c| !c.is_immobile);
@@ -113,51 +93,44 @@ impl Builder<'_> {
             ("directors of", &bodies[..]),
             ("redundant coordinates at the ends of", &named[..]),
         );
-        let mut made = Made {
-            multipliers: all.names,
-            ..Made::default()
-        };
-        made.add(RIGID, -h0, rigid, directors, "no body that moves");
-        let none = "no joint that calls for one";
-        made.add(DIRECTIONS, -h0, all.dots, ends, none);
-        made.add(POINTS, -h0, points, ends, none);
-        let none = "no joint names a stiffness";
+        made.multipliers = all.names;
+        made.add(RIGID, -h0, rigid, directors);
+        made.add(DIRECTIONS, -h0, all.dots, ends);
+        made.add(POINTS, -h0, points, ends);
         let of: Vec<&str> = all.of.iter().map(String::as_str).collect();
         let of = ("stiffness of", &of[..]);
-        made.add(COORDINATES, -h0, all.angles, of, none);
-        made.add(COORDINATES, -h0, all.displacements, of, none);
-        let none = "no node is glued to a body that moves";
-        made.add(GLUE, -h0, all.points, ("glued nodes of", &glued), none);
-        made
+        made.add(COORDINATES, -h0, all.angles, of);
+        made.add(COORDINATES, -h0, all.displacements, of);
+        made.add(GLUE, -h0, all.points, ("glued nodes of", &glued));
     }
 
     /// Constraints of the joints, those that close loops without what is left out.
-    fn joints(&mut self, out: &mut Constraints) {
-        for (j, joint) in self.system.joints.iter().enumerate() {
+    fn joints(&self, vectors: &mut Vectors, out: &mut Elements) {
+        for (j, joint) in self.presolved.system.joints.iter().enumerate() {
             if let Some(products) = self.loops.kept(j) {
-                out.products(self.vectors, products.to_vec());
+                out.products(vectors, products.to_vec());
                 continue;
             }
             let made = JointConstraints::new(joint, self.reference);
-            out.products(self.vectors, made.products);
+            out.products(vectors, made.products);
             if let Some(span) = made.point {
-                out.point(self.vectors, &joint.name, span);
+                out.point(vectors, &joint.name, span);
             }
         }
     }
 
     /// Internal coordinates are those of their joints.
-    fn joint_coordinates(&mut self, out: &mut Constraints) {
+    fn joint_coordinates(&self, vectors: &mut Vectors, out: &mut Elements) {
         for (internal, value) in self.internals.vectors() {
             let InternalKind::Joint(index) = internal.kind else {
                 continue;
             };
-            let joint = &self.system.joints[index];
-            let value = Stencil::Here.of(self.vectors.index(value));
+            let joint = &self.presolved.system.joints[index];
+            let value = Stencil::Here.of(vectors.index(value));
             let scalars = [out.names.len()];
             out.names.push(internal.name.clone());
             out.of.push(joint.name.clone());
-            let mut index = |v: MaterialVector| Stencil::Here.of(self.vectors.index(v));
+            let mut index = |v: MaterialVector| Stencil::Here.of(vectors.index(v));
             match JointReading::new(joint, None, self.reference).measure {
                 JointCoordinate::Angle { vectors } => {
                     let [a, b, c] = vectors.map(&mut index);
@@ -180,7 +153,7 @@ impl Builder<'_> {
 
 /// Constraints collected for groups; multipliers are numbered in the order of the names.
 #[derive(Default)]
-struct Constraints {
+struct Elements {
     dots: Vec<Element<Orthogonality, 7, 2, 1>>,
     points: Vec<Element<Coincidence, 6, 1, 3>>,
     angles: Vec<Element<JointAngle, 13, 4, 1>>,
@@ -190,7 +163,7 @@ struct Constraints {
     of: Vec<String>,
 }
 
-impl Constraints {
+impl Elements {
     fn dot(
         &mut self,
         vectors: &mut Vectors,

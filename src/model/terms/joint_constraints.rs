@@ -1,15 +1,9 @@
 //! Constraints of a joint: constant products of material vectors, and points that coincide.
 
-use crate::energy::{AngularDamper, Coefficient, CoordinateDamper, Law, LinearDamper};
-use crate::functional::VectorArg;
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
-use crate::model::analysis::Coordinates;
-use crate::model::constants::constant::Constant;
-use crate::model::presolve::presolved::Presolved;
-use crate::model::system::joints::{JointCoordinate, JointReading, triad};
+use crate::model::system::joints::triad;
 use crate::model::system::{Joint, JointKind};
-use crate::model::terms::{Terms, mid, rate};
 
 /// A constraint `a·b = 0` of two material vectors.
 #[derive(Clone, Debug, PartialEq)]
@@ -156,95 +150,6 @@ impl<'a> JointConstraints<'a> {
         for (i, direction) in directions.iter().enumerate() {
             let (p, span) = (self.parent(direction), self.span());
             self.add(&format!("offset {}", i + 1), p, span);
-        }
-    }
-}
-
-/// Term of the dampers of joints.
-pub const DAMPING: &str = "joint damping";
-
-/// Dampers of the joints that are solved for.
-pub(crate) fn build_dampers(
-    presolved: &Presolved,
-    reference: &[Pose],
-    coordinates: Coordinates,
-    terms: &mut Terms<'_>,
-) {
-    if !terms.is_of_motion() {
-        return terms.without(DAMPING, "a state of rest dissipates nothing");
-    }
-    let system = &presolved.system;
-    let joints = system.joints.iter().zip(system.joint_coordinates());
-    for ((joint, coordinate), &index) in joints.zip(&presolved.joints) {
-        let Some(coefficient) = joint.damping else {
-            continue;
-        };
-        let damper = Damper {
-            joint,
-            index,
-            coefficient,
-        };
-        match (coordinates, coordinate) {
-            (Coordinates::Reduced, Some(coordinate)) => damper.on_coordinate(coordinate, terms),
-            (Coordinates::Reduced, None) => {}
-            (Coordinates::Redundant, _) => damper.on_vectors(reference, terms),
-        }
-    }
-    terms.without(DAMPING, "no joint that moves names a damping");
-}
-
-/// The damper of a joint.
-struct Damper<'a> {
-    joint: &'a Joint,
-    /// Index of the joint in the scene.
-    index: usize,
-    coefficient: f64,
-}
-
-impl Damper<'_> {
-    /// Adds the term of a law of the coefficient.
-    fn add<L: Law<M>, const M: usize, const NV: usize>(
-        &self,
-        law: impl Fn(Coefficient) -> L,
-        vectors: [VectorArg; NV],
-        terms: &mut Terms<'_>,
-    ) {
-        let mut read = terms.sought().read();
-        let constant = Constant::JointDamping(self.index);
-        let law = law(read.constant(constant, self.coefficient));
-        let element = read.element(law, vectors, []);
-        terms.add_law(DAMPING, "damping of", &self.joint.name, element);
-    }
-
-    fn on_coordinate(&self, coordinate: usize, terms: &mut Terms<'_>) {
-        let vector = terms.vector(MaterialVector::coordinate(coordinate));
-        let law = |coefficient| CoordinateDamper { coefficient };
-        self.add(law, [mid(vector), rate(vector)], terms);
-    }
-
-    fn on_vectors(&self, reference: &[Pose], terms: &mut Terms<'_>) {
-        match JointReading::new(self.joint, None, reference).measure {
-            JointCoordinate::Angle { vectors } => {
-                let [a, b, x] = vectors.map(|v| terms.vector(v));
-                let vectors = [
-                    mid(a),
-                    mid(b),
-                    mid(x),
-                    mid(a),
-                    mid(b),
-                    mid(x),
-                    rate(a),
-                    rate(b),
-                    rate(x),
-                ];
-                self.add(|coefficient| AngularDamper { coefficient }, vectors, terms);
-            }
-            JointCoordinate::Displacement { axis, span } => {
-                let [n, r] = [axis, span].map(|v| terms.vector(v));
-                let vectors = [mid(n), mid(r), mid(n), mid(r), rate(n), rate(r)];
-                self.add(|coefficient| LinearDamper { coefficient }, vectors, terms);
-            }
-            JointCoordinate::None => {}
         }
     }
 }

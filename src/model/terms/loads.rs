@@ -6,11 +6,10 @@ use crate::math::Vector;
 use crate::model::components::muscle::{CHARGES as MUSCLE_CHARGES, constants};
 use crate::model::components::{BlockLoad, Load, LoadPlace};
 use crate::model::constants::free_parameters::{MovedPoints, Read};
-use crate::model::layout::internal::Internals;
+use crate::model::construction::Construction;
 use crate::model::layout::solid_block::SolidBlock;
-use crate::model::layout::solids::Solids;
 use crate::model::presolve::presolved::Presolved;
-use crate::model::system::{Attachment, Muscle, System};
+use crate::model::system::{Attachment, Muscle};
 use crate::model::terms::{Terms, mid};
 
 /// Term of the loads whose forces have a potential.
@@ -29,14 +28,8 @@ pub(crate) fn moves(load: &Load, presolved: &Presolved) -> bool {
 }
 
 /// Terms of the loads of a scene; their inputs are the last ones of `sources`.
-pub(crate) fn build(
-    system: &System,
-    presolved: &Presolved,
-    internals: &Internals,
-    blocks: &Solids,
-    spans: &[usize],
-    terms: &mut Terms<'_>,
-) {
+pub(crate) fn build(of: &Construction<'_>, terms: &mut Terms<'_>) {
+    let system = of.system;
     for (source, load) in system.loads() {
         let Some(size) = terms.input(source) else {
             terms.without(LOADS, "no load is ever other than 0 on what moves");
@@ -66,23 +59,18 @@ pub(crate) fn build(
                 }
             }
             LoadPlace::Joint(joint) => {
-                let kept = presolved.joint(*joint);
-                let coordinate = kept.and_then(|kept| internals.joint(kept));
+                let kept = of.presolved.joint(*joint);
+                let coordinate = kept.and_then(|kept| of.internals.joint(kept));
                 let coordinate = coordinate.expect("a loaded joint has its coordinate");
                 let coordinate = on.terms.vector(coordinate);
                 on.pull(coordinate, Vector::x(), Read::nothing());
             }
             LoadPlace::Muscle(muscle) => {
-                on.charge_muscle(&system.muscles[*muscle], *muscle, spans[*muscle]);
+                on.charge_muscle(&system.muscles[*muscle], *muscle, of.spans[*muscle]);
             }
-            LoadPlace::Block { block, load } => on.block(&blocks.list[*block], load),
+            LoadPlace::Block { block, load } => on.block(&of.blocks.list[*block], load),
         }
     }
-    terms.without_each([LOADS, FOLLOWING, CHARGES], "no load of its kind");
-    terms.without(
-        MUSCLE_CHARGES,
-        "no charge of a lumped muscle is given, or flows through a resistor",
-    );
 }
 
 /// A load whose terms are added.

@@ -6,6 +6,7 @@ pub(super) mod charged;
 pub(super) mod constraints;
 pub(super) mod field_extent;
 pub(super) mod joint_constraints;
+pub(super) mod joint_forces;
 pub(super) mod loads;
 pub(super) mod parametric_elements;
 
@@ -22,6 +23,7 @@ use crate::model::system::bodies::Attachment;
 use crate::model::system::maxwell::Response;
 use std::any::Any;
 use std::fmt;
+use std::sync::Arc;
 
 /// Reason for the springs of branches at rest.
 pub(super) const UNRELAXED: &str = "unrelaxed Maxwell branches of";
@@ -154,19 +156,17 @@ impl<'a> Terms<'a> {
         !self.of_motion && self.response == Response::Instantaneous
     }
 
-    /// Says why terms of Maxwell branches are left out, should they be; `none` where nothing names a branch.
-    pub(super) fn without_branches(
-        &mut self,
-        [elasticity, viscosity]: [&'static str; 2],
-        none: &'static str,
-    ) {
-        let reasons = match (self.of_motion, self.response) {
-            (true, _) => [none; 2],
-            (false, Response::Relaxed) => ["at rest Maxwell branches are relaxed"; 2],
-            (false, Response::Instantaneous) => [none, "a state of rest dissipates nothing"],
-        };
-        self.without(elasticity, reasons[0]);
-        self.without(viscosity, reasons[1]);
+    /// Says why terms of Maxwell branches are left out of a state of rest, should they be.
+    pub(super) fn without_branches(&mut self, terms: [&'static str; 2]) {
+        match (self.of_motion, self.response) {
+            (true, _) => {}
+            (false, Response::Relaxed) => {
+                self.without_each(terms, "at rest Maxwell branches are relaxed");
+            }
+            (false, Response::Instantaneous) => {
+                self.without(terms[1], "a state of rest dissipates nothing");
+            }
+        }
     }
 
     /// The point as a vector, whose body is the one that carries it.
@@ -338,10 +338,10 @@ impl<'a> Terms<'a> {
     pub(super) fn finish(
         mut self,
         rank: impl Fn(&str) -> usize,
-    ) -> (Vec<Box<dyn Term>>, Vec<Present>, Vec<LeftOut>) {
+    ) -> (Vec<Arc<dyn Term>>, Vec<Present>, Vec<LeftOut>) {
         self.collected.sort_by_key(|collected| rank(collected.term));
         let collected = self.collected.into_iter();
-        let terms = collected.map(|c| (c.finish)(c.term, c.list));
+        let terms = collected.map(|c| Arc::from((c.finish)(c.term, c.list)));
         (terms.collect(), self.present, self.left_out)
     }
 }
@@ -404,18 +404,6 @@ pub struct LeftOut {
     pub term: &'static str,
     /// Reason why it is absent.
     pub why: &'static str,
-}
-
-/// Keeps the first reason for each term that is not there, in the order of the sum, in which `rank` is the place of a term.
-pub(super) fn settle(
-    present: &[Present],
-    left_out: &mut Vec<LeftOut>,
-    rank: impl Fn(&str) -> usize,
-) {
-    let is_there = |term| present.iter().any(|p| p.term == term);
-    left_out.retain(|l| !is_there(l.term));
-    left_out.sort_by_key(|l| rank(l.term));
-    left_out.dedup_by_key(|l| l.term);
 }
 
 /// Notes that a part of the scene calls for a term.
