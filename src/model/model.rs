@@ -221,8 +221,8 @@ impl Model {
 
     /// Coordinates that muscles and blocks remember: they have no momentum, and nothing brings them to rest but time.
     pub fn memory(&self) -> impl Iterator<Item = usize> + '_ {
-        let own = self.internals_of(|kind| kind.is_memory().then_some(()));
-        own.map(|(coordinate, ())| coordinate)
+        let all = self.internal_kinds();
+        all.filter_map(|(coordinate, kind)| kind.is_memory().then_some(coordinate))
     }
 
     /// Returns true if it has Maxwell branches, whose stretches follow the motion in times of their own.
@@ -232,9 +232,9 @@ impl Model {
 
     /// Coordinates of the viscous strains of blocks: they have no inertia, whatever moves.
     pub fn strains(&self) -> impl Iterator<Item = usize> + '_ {
-        let is_strain = |kind| matches!(kind, InternalKind::Strain { .. });
-        let own = self.internals_of(move |kind| is_strain(kind).then_some(()));
-        own.map(|(coordinate, ())| coordinate)
+        let all = self.internal_kinds();
+        let strains = all.filter(|(_, kind)| matches!(kind, InternalKind::Strain { .. }));
+        strains.map(|(coordinate, _)| coordinate)
     }
 
     /// Returns true if coordinate `i` is one of [`memory`](Self::memory).

@@ -34,41 +34,29 @@ struct Direct<'a> {
 }
 
 impl<'k> Reading<'k, '_> {
-    /// The measure of a quantity of a muscle and its source.
-    pub(super) fn of_charge(&mut self) -> Made {
-        match self.quantity.what {
-            What::ChargedField(muscle) => {
-                let Charged { of, energy, read } = self.charged(muscle)?;
-                let field = FlowingChargeField {
-                    field: charge_field(energy.capacitance, self.quantity.unit),
-                    unit: energy.unit,
-                };
-                self.law(of.element(field, read.map(|vector| self.at(vector)), []))
-            }
-            What::Charge(source) => self.charge(source),
-            What::ElectrodeVoltage(source) => self.across(source),
-            What::Current(source) | What::Power(source) => self.flow(source),
-            What::MeanCharge(muscle) => {
-                let Direct {
-                    of,
-                    capacitance,
-                    span,
-                    voltage,
-                } = self.direct(muscle)?;
-                let ends = [Stencil::Here, Stencil::Next].map(|at| at.of(span));
-                self.law(of.element(MeanCharge(capacitance), ends, [voltage]))
-            }
-            What::Energy(muscle) => {
-                let Direct {
-                    of,
-                    capacitance,
-                    span,
-                    voltage,
-                } = self.direct(muscle)?;
-                self.law(of.element(StoredEnergy(capacitance), [self.at(span)], [voltage]))
-            }
-            _ => None,
-        }
+    /// Squared field of a muscle behind a resistor over the one of the unit.
+    pub(super) fn charged_field(&mut self, muscle: usize) -> Made {
+        let Charged { of, energy, read } = self.charged(muscle)?;
+        let field = FlowingChargeField {
+            field: charge_field(energy.capacitance, self.quantity.unit),
+            unit: energy.unit,
+        };
+        self.law(of.element(field, read.map(|vector| self.at(vector)), []))
+    }
+
+    /// Mean charge of a muscle under the voltage of its source in mC.
+    pub(super) fn mean_charge(&mut self, muscle: usize) -> Made {
+        let own = self.direct(muscle)?;
+        let ends = [Stencil::Here, Stencil::Next].map(|at| at.of(own.span));
+        let law = MeanCharge(own.capacitance);
+        self.law(own.of.element(law, ends, [own.voltage]))
+    }
+
+    /// Energy of a muscle under the voltage of its source in mJ.
+    pub(super) fn stored_energy(&mut self, muscle: usize) -> Made {
+        let own = self.direct(muscle)?;
+        let law = StoredEnergy(own.capacitance);
+        self.law(own.of.element(law, [self.at(own.span)], [own.voltage]))
     }
 
     /// The electrodes behind a resistor that a source charges.
@@ -78,7 +66,7 @@ impl<'k> Reading<'k, '_> {
     }
 
     /// Charge behind the resistor of a source in mC.
-    fn charge(&mut self, source: usize) -> Made {
+    pub(super) fn charge(&mut self, source: usize) -> Made {
         let charge = InternalKind::Charge(source);
         let charge = self.known.internals.vector(charge)?;
         let unit = match self.electrodes(source) {
@@ -91,7 +79,7 @@ impl<'k> Reading<'k, '_> {
     }
 
     /// Voltage of the electrodes behind the resistor of a source.
-    fn across(&mut self, source: usize) -> Made {
+    pub(super) fn across(&mut self, source: usize) -> Made {
         if let Some(of) = self.electrodes(source) {
             let (potential, volts) = of.potential;
             let multiple = Multiple { unit: 1.0 / volts };
@@ -105,7 +93,7 @@ impl<'k> Reading<'k, '_> {
     }
 
     /// Current of the source of electrodes behind a resistor; current or power of the source of a muscle behind one.
-    fn flow(&mut self, source: usize) -> Made {
+    pub(super) fn flow(&mut self, source: usize) -> Made {
         let is_current = matches!(self.quantity.what, What::Current(_));
         let unit = self.quantity.unit;
         if let Some(of) = self.electrodes(source).filter(|_| is_current) {

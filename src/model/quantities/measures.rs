@@ -165,13 +165,12 @@ impl<'k> Reading<'k, '_> {
                 ref muscles,
                 amount,
             } => self.amount(muscles, amount),
-            What::ChargedField(_)
-            | What::Current(_)
-            | What::Power(_)
-            | What::Charge(_)
-            | What::MeanCharge(_)
-            | What::ElectrodeVoltage(_)
-            | What::Energy(_) => self.of_charge(),
+            What::ChargedField(muscle) => self.charged_field(muscle),
+            What::Current(source) | What::Power(source) => self.flow(source),
+            What::Charge(source) => self.charge(source),
+            What::MeanCharge(muscle) => self.mean_charge(muscle),
+            What::ElectrodeVoltage(source) => self.across(source),
+            What::Energy(muscle) => self.stored_energy(muscle),
             What::Tension(Pulling::Muscle(muscle)) => self.tension(muscle),
             What::Tension(part) => self.pull(part),
             What::Reaction { joint, of, along } => self.reaction(joint, of, along),

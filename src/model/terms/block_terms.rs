@@ -84,15 +84,9 @@ impl Solids {
                 law: Viscosity { viscosity },
                 nodes: c.nodes(e),
             };
-            let mut read = terms.sought().read();
-            let factor = read.constant(c.constant(e, MaterialConstant::Viscosity), viscosity);
-            let (given, unit) = (element(viscosity), element(1.0));
-            Call {
-                term: VISCOSITY,
-                why: "viscosity of",
-                of: &c.solid.name,
-            }
-            .add_times(given, unit, factor, read, terms);
+            let call = Call(VISCOSITY, "viscosity of", &c.solid.name);
+            let constant = c.constant(e, MaterialConstant::Viscosity);
+            call.add_linear(constant, viscosity, element, terms);
         }
     }
 }
@@ -251,17 +245,9 @@ impl Solids {
                         nodes: c.nodes(e),
                         terminals: (),
                     };
-                    let modulus = constants.shear_modulus;
-                    let mut read = terms.sought().read();
+                    let call = Call(MAXWELL[0], UNRELAXED, &c.solid.name);
                     let constant = c.constant(e, MaterialConstant::BranchModulus(branch));
-                    let factor = read.constant(constant, modulus);
-                    let (given, unit) = (element(modulus), element(1.0));
-                    Call {
-                        term: MAXWELL[0],
-                        why: UNRELAXED,
-                        of: &c.solid.name,
-                    }
-                    .add_times(given, unit, factor, read, terms);
+                    call.add_linear(constant, constants.shear_modulus, element, terms);
                 }
             }
         }
@@ -282,11 +268,8 @@ fn add_branch(
         shear_modulus,
         relaxation_time,
     } = *constants;
-    let [elasticity, viscosity] = MAXWELL.map(|term| Call {
-        term,
-        why: "Maxwell branches of",
-        of: &c.solid.name,
-    });
+    let [elasticity, viscosity] =
+        MAXWELL.map(|term| Call(term, "Maxwell branches of", &c.solid.name));
     let [of_modulus, of_time] = [
         MaterialConstant::BranchModulus(branch),
         MaterialConstant::RelaxationTime(branch),
@@ -294,7 +277,6 @@ fn add_branch(
     .map(|constant| c.constant(e, constant));
     let mut read = terms.sought().read();
     let modulus = read.constant(of_modulus, shear_modulus);
-    let of_spring = read.clone();
     let both = &modulus * &read.constant(of_time, relaxation_time);
     let strains = strains.map(|parts| parts.map(|part| terms.new_vector(part)));
     let shape = c.shapes[e].clone();
@@ -316,8 +298,7 @@ fn add_branch(
         nodes: c.nodes(e),
         strains,
     };
-    let (given, unit) = (element(shear_modulus), element(1.0));
-    elasticity.add_times(given, unit, modulus, of_spring, terms);
+    elasticity.add_linear(of_modulus, shear_modulus, element, terms);
 }
 
 impl Model {

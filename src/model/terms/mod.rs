@@ -69,16 +69,16 @@ impl fmt::Debug for Terms<'_> {
 
 /// Reason for a term: the name of the term, words such as "stiffness of", and the component.
 #[derive(Clone, Copy)]
-pub(super) struct Call<'a> {
-    pub(super) term: &'static str,
-    pub(super) why: &'static str,
-    pub(super) of: &'a str,
-}
+pub(super) struct Call<'a>(
+    pub(super) &'static str,
+    pub(super) &'static str,
+    pub(super) &'a str,
+);
 
 impl Call<'_> {
     /// Adds an element.
     pub(super) fn add<K: Kernel>(self, element: K, terms: &mut Terms<'_>) {
-        terms.collect(self.term, self.why, self.of, element);
+        terms.collect(self.0, self.1, self.2, element);
     }
 
     /// Adds an element, of those that are no formulas of constants, times a constant that follows parameters.
@@ -111,6 +111,19 @@ impl Call<'_> {
             true => self.add(given, terms),
             false => self.add_scaled(unit, factor, read, terms),
         }
+    }
+
+    /// Adds an element that is linear in a constant, as it is for the value or times a free one.
+    pub(super) fn add_linear<K: Kernel>(
+        self,
+        constant: Constant,
+        value: f64,
+        element: impl Fn(f64) -> K,
+        terms: &mut Terms<'_>,
+    ) {
+        let mut read = terms.sought().read();
+        let factor = read.constant(constant, value);
+        self.add_times(element(value), element(1.0), factor, read, terms);
     }
 }
 

@@ -67,11 +67,7 @@ impl ElementOf<'_> {
 
     /// Reason for the terms of its elasticity without a field.
     fn call(&self) -> Call<'_> {
-        Call {
-            term: self.names[0],
-            why: ELASTIC,
-            of: &self.block.solid.name,
-        }
+        Call(self.names[0], ELASTIC, &self.block.solid.name)
     }
 
     /// Adds its energy by a law.
@@ -193,11 +189,7 @@ impl ElementOf<'_> {
                 nodes,
                 terminals,
             };
-            let call = Call {
-                term: names[1],
-                why: DIELECTRIC,
-                of: &block.solid.name,
-            };
+            let call = Call(names[1], DIELECTRIC, &block.solid.name);
             return collect(call, element, factor, terms);
         }
         let mut law = block.passive(number).by(law);
