@@ -75,7 +75,12 @@ fn by_rows(
             column.values.push(*value);
         }
     }
-    let [of_intervals, of_momenta] = [observer.of_intervals(), observer.of_momenta()];
+    let place = |name: &str| {
+        let place = columns.iter().position(|column| column.name == name);
+        place.expect("a column of all models")
+    };
+    let of_intervals = model.system.muscles.len()..place("total_energy") + 1;
+    let momentum = place("linear_momentum_x");
     let of_parts = columns.len() - observer.parts.columns(model).len()..columns.len();
     for (column, (kind, _)) in columns[of_intervals.end..].iter_mut().zip(works(model)) {
         let is_lost = kind == TermKind::Dissipation;
@@ -90,7 +95,12 @@ fn by_rows(
         to_instants(times, &mut columns[of_intervals], &last.of_intervals());
         to_instants(times, &mut columns[of_parts.clone()], &last.parts);
         let before: Vec<_> = rows.iter().map(|row| row.before).collect();
-        means(&discrete.times, &mut columns[of_momenta], &before, &last);
+        means(
+            &discrete.times,
+            &mut columns[momentum..momentum + 6],
+            &before,
+            &last,
+        );
     }
     for (k, row) in rows.iter().enumerate() {
         for (column, added) in columns[of_parts.clone()].iter_mut().zip(&row.charging) {
@@ -143,22 +153,6 @@ impl<'m> Observer<'m> {
         }
     }
 
-    /// The columns that the midpoint rule sees in the middle of intervals.
-    fn of_intervals(&self) -> Range<usize> {
-        let columns = columns(self.model, &self.parts);
-        let total = columns.iter().position(|c| c.name == "total_energy");
-        let total = total.expect("there is a total energy");
-        self.model.system.muscles.len()..total + 1
-    }
-
-    /// Columns of the momenta.
-    fn of_momenta(&self) -> Range<usize> {
-        let columns = columns(self.model, &self.parts);
-        let first = columns.iter().position(|c| c.name == "linear_momentum_x");
-        let first = first.expect("there is a momentum");
-        first..first + 6
-    }
-
     /// Values at the last instant.
     fn last(&mut self, discrete: &DiscreteTrajectory) -> State {
         let end = discrete.intervals();
@@ -171,28 +165,18 @@ impl<'m> Observer<'m> {
     fn state(&mut self, discrete: &DiscreteTrajectory, k: usize, sides: &[Side]) -> State {
         let model = self.model;
         self.before.clone_from(&self.here);
-        let [mut charges, mut potential] = [Vec::new(), Vec::new()];
-        for Side {
-            scalars, weight, ..
-        } in sides
-        {
-            let of = energies(model, &self.here, &self.here, scalars, 1.0).potential;
-            add(&mut potential, *weight, &of);
-            let immobile = model.solids.iter();
-            let immobile = immobile.flat_map(|one| one.immobile_charges(&self.here.x, scalars));
-            let mut of: Vec<f64> = immobile.collect();
-            of.extend(self.interval(scalars, 1.0));
-            add(&mut charges, *weight, &of);
-        }
+        let potential = weighted(sides, |scalars| {
+            energies(model, &self.here, &self.here, scalars, 1.0).potential
+        });
+        let charges = weighted(sides, |scalars| {
+            let mut charges = immobile_charges(model, &self.here.x, scalars);
+            charges.extend(self.interval(scalars, 1.0));
+            charges
+        });
         let (kinetic, momenta) = self.moves(discrete, k);
-        let mut parts = Vec::new();
-        for Side {
-            scalars, weight, ..
-        } in sides
-        {
-            let of = self.parts.values(model, &self.here, scalars);
-            add(&mut parts, *weight, &of);
-        }
+        let parts = weighted(sides, |scalars| {
+            self.parts.values(model, &self.here, scalars)
+        });
         let none = vec![Vector::zeros(); momenta.len()];
         let momenta = self.maps(&self.here, &momenta, &none);
         State {
@@ -241,18 +225,9 @@ impl<'m> Observer<'m> {
         }
         let viscous = model.viscous_coordinates();
         row.extend(viscous.map(|coordinate| self.here.z[coordinate].exp()));
-        let mut voltages = Vec::new();
-        for Side {
-            scalars, weight, ..
-        } in &sides
-        {
-            add(
-                &mut voltages,
-                *weight,
-                &model.electrode_voltages(&self.here, scalars),
-            );
-        }
-        row.extend(voltages);
+        row.extend(weighted(&sides, |scalars| {
+            model.electrode_voltages(&self.here, scalars)
+        }));
         row.extend(state.parts);
         let time = interval.map_or(0.0, |interval| {
             let next = discrete.times.get(k + 1).unwrap_or(&discrete.times[k]);
@@ -279,9 +254,7 @@ impl<'m> Observer<'m> {
         let energies = energies(model, &self.before, &self.here, scalars, h);
         let ends = self.before.x.iter().zip(&self.here.x);
         let middles: Vec<Vector> = ends.map(|(a, b)| (a + b) * 0.5).collect();
-        let immobile = model.solids.iter();
-        let immobile = immobile.flat_map(|block| block.immobile_charges(&middles, scalars));
-        let mut charges: Vec<f64> = immobile.collect();
+        let mut charges = immobile_charges(model, &middles, scalars);
         charges.extend(self.interval(scalars, h));
         let [before, momenta] = self.momenta_of_interval(h);
         let ends = [&self.before, &self.here];
@@ -363,22 +336,35 @@ impl<'m> Observer<'m> {
     }
 }
 
-/// Adds `weight` times some values to a list, which is empty before the first.
-fn add(list: &mut Vec<f64>, weight: f64, values: &[f64]) {
-    list.resize(values.len(), 0.0);
-    for (sum, value) in list.iter_mut().zip(values) {
-        *sum += weight * value;
+/// Charges of the electrodes that no voltage drives, with the vectors at places x.
+fn immobile_charges(model: &Model, x: &[Vector], scalars: &[f64]) -> Vec<f64> {
+    let blocks = model.solids.iter();
+    blocks
+        .flat_map(|block| block.immobile_charges(x, scalars))
+        .collect()
+}
+
+/// Means of values under the scalars of sides by their weights.
+fn weighted(sides: &[Side], mut of: impl FnMut(&[f64]) -> Vec<f64>) -> Vec<f64> {
+    let mut sums = Vec::new();
+    for side in sides {
+        let values = of(&side.scalars);
+        sums.resize(values.len(), 0.0);
+        for (sum, value) in sums.iter_mut().zip(values) {
+            *sum += side.weight * value;
+        }
     }
+    sums
 }
 
 /// Instants that one thread observes in a row.
-pub(super) const PIECE: usize = 256;
+const PIECE: usize = 256;
 
 /// Rows `0..count` in order, made by pieces of a length.
 ///
 /// # Errors
 /// One of the pieces was stopped.
-pub(super) fn in_pieces<T: Send>(
+fn in_pieces<T: Send>(
     count: usize,
     piece: usize,
     make: impl Fn(Range<usize>) -> Result<Vec<T>, Stopped> + Sync,
@@ -396,22 +382,22 @@ pub(super) fn in_pieces<T: Send>(
 }
 
 /// Linear and angular momentum by axis.
-pub(super) type Momenta = [f64; 6];
+type Momenta = [f64; 6];
 
 /// Values at one instant.
 #[derive(Debug)]
-pub(super) struct State {
-    pub(super) charges: Vec<f64>,
-    pub(super) kinetic: f64,
-    pub(super) potential: Vec<f64>,
-    pub(super) momenta: Momenta,
+struct State {
+    charges: Vec<f64>,
+    kinetic: f64,
+    potential: Vec<f64>,
+    momenta: Momenta,
     /// Values of the [parts](crate::dynamics::part_columns::PartColumns).
-    pub(super) parts: Vec<f64>,
+    parts: Vec<f64>,
 }
 
 impl State {
     /// Charges, kinetic, potential and total energy, in the order of their columns.
-    pub(super) fn of_intervals(&self) -> Vec<f64> {
+    fn of_intervals(&self) -> Vec<f64> {
         let total = self.kinetic + self.potential.iter().sum::<f64>();
         let values = self.charges.iter().copied().chain([self.kinetic]);
         let values = values.chain(self.potential.iter().copied());
@@ -420,7 +406,7 @@ impl State {
 }
 
 /// Turns values in the middle of the intervals that end at the rows into values at the rows; `last` holds those of the last one.
-pub(super) fn to_instants(times: &[f64], columns: &mut [Column], last: &[f64]) {
+fn to_instants(times: &[f64], columns: &mut [Column], last: &[f64]) {
     let end = times.len() - 1;
     let length = |k: usize| times[k] - times[k - 1];
     for (column, value) in columns.iter_mut().zip(last) {
@@ -435,7 +421,7 @@ pub(super) fn to_instants(times: &[f64], columns: &mut [Column], last: &[f64]) {
 
 /// Turns momenta as the interval before each row sees them into means of both intervals next to it, each weighted by the length of
 /// the other, so that a constant reaction cancels; `before` holds what the interval that ends at a row sees at the row before.
-pub(super) fn means(times: &[f64], columns: &mut [Column], before: &[Momenta], last: &State) {
+fn means(times: &[f64], columns: &mut [Column], before: &[Momenta], last: &State) {
     let end = times.len() - 1;
     for (i, column) in columns.iter_mut().enumerate() {
         for k in 1..end {
@@ -448,7 +434,7 @@ pub(super) fn means(times: &[f64], columns: &mut [Column], before: &[Momenta], l
 }
 
 /// Names and units of the columns, in the order of the values of a row.
-pub(super) fn columns(model: &Model, parts: &PartColumns) -> Vec<Column> {
+fn columns(model: &Model, parts: &PartColumns) -> Vec<Column> {
     let mut columns = Vec::new();
     let mut add = |name: String, unit: &'static str| {
         columns.push(Column {
@@ -506,7 +492,7 @@ pub(super) fn columns(model: &Model, parts: &PartColumns) -> Vec<Column> {
 }
 
 /// Kinds of work that are done, each with the name of its sum.
-pub(super) fn works(model: &Model) -> impl Iterator<Item = (TermKind, &'static str)> {
+fn works(model: &Model) -> impl Iterator<Item = (TermKind, &'static str)> {
     let terms = &model.action.intervals.terms;
     let has = |kind| terms.iter().any(|term| term.kind() == kind);
     let all = [

@@ -16,6 +16,7 @@ use crate::dynamics::trajectory::{Column, DiscreteTrajectory, Reading, Side};
 use crate::functional::{Order, Output, Sample};
 use crate::math::Vector;
 use crate::model::{JOINT_DAMPING, JointSection, Model, MuscleReading, joint_unit};
+use nalgebra::DVector;
 
 /// The parts whose state is read.
 #[derive(Debug)]
@@ -92,7 +93,7 @@ impl PartColumns {
                 values.push(reading.field(model, at, scalars));
             }
             let flow = reading.flow(model, at, scalars);
-            values.extend(flow.iter().flat_map(|flow| [flow.current, flow.power]));
+            values.extend(flow.into_iter().flatten());
         }
         let circuits = model.electrode_circuits.iter();
         values.extend(circuits.flat_map(|circuit| circuit.flow(circuit.voltage(scalars), scalars)));
@@ -255,7 +256,7 @@ pub(super) fn reactions(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Col
         0 => return Vec::new(),
         _ if discrete.times.len() == 1 => {
             let [before, after] = Impulses::new(model, &sections).between([0, 0], discrete, 1.0);
-            vec![sum(&before, &after)]
+            vec![before + after]
         }
         _ => of_motion(model, &sections, discrete),
     };
@@ -287,7 +288,7 @@ fn of_motion(
     model: &Model,
     sections: &[JointSection],
     discrete: &DiscreteTrajectory,
-) -> Vec<Vec<f64>> {
+) -> Vec<DVector<f64>> {
     let times = &discrete.times;
     let end = discrete.intervals();
     let mut impulses = Impulses::new(model, sections);
@@ -297,25 +298,21 @@ fn of_motion(
         halves.push(impulses.between([k, k + 1], discrete, h));
     }
     let inner = (1..end).map(|k| {
-        let time = 0.5 * (times[k + 1] - times[k - 1]);
-        let impulse = sum(&halves[k - 1][1], &halves[k][0]);
-        impulse.iter().map(|value| value / time).collect()
+        let impulse = &halves[k - 1][1] + &halves[k][0];
+        impulse / (0.5 * (times[k + 1] - times[k - 1]))
     });
-    let inner: Vec<Vec<f64>> = inner.collect();
+    let inner: Vec<DVector<f64>> = inner.collect();
+    let part = |a: usize, b: usize, c: usize| (times[a] - times[b]) / (times[b] - times[c]);
+    let beyond = |a: &DVector<f64>, b: &DVector<f64>, part: f64| a + (a - b) * part;
     let ends = match inner.as_slice() {
         // One interval: the mean over it.
         [] => {
-            let mean = sum(&halves[0][0], &halves[0][1]);
-            let mean: Vec<f64> = mean
-                .iter()
-                .map(|value| value / (times[1] - times[0]))
-                .collect();
+            let mean = (&halves[0][0] + &halves[0][1]) / (times[1] - times[0]);
             [mean.clone(), mean]
         }
         [only] => [only.clone(), only.clone()],
         [first, second, ..] => {
             let [before, last] = [&inner[end - 3], &inner[end - 2]];
-            let part = |a: usize, b: usize, c: usize| (times[a] - times[b]) / (times[b] - times[c]);
             [
                 beyond(first, second, part(0, 1, 2)),
                 beyond(last, before, part(end, end - 1, end - 2)),
@@ -324,16 +321,6 @@ fn of_motion(
     };
     let [first, last] = ends;
     [first].into_iter().chain(inner).chain([last]).collect()
-}
-
-fn sum(a: &[f64], b: &[f64]) -> Vec<f64> {
-    a.iter().zip(b).map(|(a, b)| a + b).collect()
-}
-
-/// `a + part (a − b)`.
-fn beyond(a: &[f64], b: &[f64], part: f64) -> Vec<f64> {
-    let pairs = a.iter().zip(b);
-    pairs.map(|(a, b)| a + part * (a - b)).collect()
 }
 
 /// The storage of impulses of an interval.
@@ -359,7 +346,7 @@ impl<'m> Impulses<'m> {
         ends: [usize; 2],
         discrete: &DiscreteTrajectory,
         h: f64,
-    ) -> [Vec<f64>; 2] {
+    ) -> [DVector<f64>; 2] {
         let Self {
             model,
             sections,
@@ -388,7 +375,8 @@ impl<'m> Impulses<'m> {
                 let parts = [force].into_iter().chain(torque);
                 parts.flat_map(|v| [v.x, v.y, v.z]).collect::<Vec<_>>()
             };
-            sections.iter().flat_map(reaction).collect()
+            let reactions: Vec<f64> = sections.iter().flat_map(reaction).collect();
+            reactions.into()
         })
     }
 }

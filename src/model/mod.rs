@@ -28,7 +28,7 @@ pub use layout::named::Freedom;
 pub(crate) use layout::node_grids::has_nodes_alone;
 pub use layout::node_grids::{NoGrids, NodeGrids};
 pub use layout::solid_block::SolidBlock;
-pub use layout::states::{MuscleReading, SourceFlow};
+pub use layout::states::MuscleReading;
 pub use layout::variables::{Role, Size, Time, Variable, Variables};
 pub use model::{Floating, Model};
 pub use presolve::graph::Graph;

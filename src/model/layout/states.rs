@@ -2,7 +2,7 @@
 
 use crate::coordinates::Configuration;
 use crate::energy::{Angle, Energy, Projection};
-use crate::kinematics::Pose;
+use crate::kinematics::{MaterialVector, Pose};
 use crate::math::{Derivatives, Jet, Local, Matrix, Vector};
 use crate::model::analysis::Coordinates;
 use crate::model::components::{capacitance, muscle};
@@ -180,20 +180,12 @@ impl JointReading {
     fn rate(&self, poses: &[Pose], rates: &[Pose]) -> f64 {
         match &self.measure {
             JointCoordinate::Angle { vectors } => {
-                let [p, w] = [
-                    vectors.each_ref().map(|v| v.at(poses, &[])),
-                    vectors.each_ref().map(|v| v.rate(rates)),
-                ];
-                let [p, w] = [p, w].map(|v| SVector::<f64, 9>::from_iterator(scalars(&v)));
+                let [p, w] = at_and_rates::<9>(vectors, poses, rates);
                 let angle: Jet<9, 3> = Angle { near: 0.0 }.at(&p, &w);
                 angle.value_w
             }
             JointCoordinate::Displacement { axis, span } => {
-                let [p, w] = [
-                    [axis, span].map(|v| v.at(poses, &[])),
-                    [axis, span].map(|v| v.rate(rates)),
-                ];
-                let [p, w] = [p, w].map(|v| SVector::<f64, 6>::from_iterator(scalars(&v)));
+                let [p, w] = at_and_rates::<6>([axis, span], poses, rates);
                 let displacement: Jet<6, 3> = Projection.at(&p, &w);
                 displacement.value_w
             }
@@ -202,8 +194,22 @@ impl JointReading {
     }
 }
 
-fn scalars(vectors: &[Vector]) -> impl Iterator<Item = f64> + '_ {
-    vectors.iter().flat_map(|v| v.iter().copied())
+/// Components of vectors at poses, and of their rates.
+fn at_and_rates<'v, const N: usize>(
+    vectors: impl IntoIterator<Item = &'v MaterialVector>,
+    poses: &[Pose],
+    rates: &[Pose],
+) -> [SVector<f64, N>; 2] {
+    let mut both = [SVector::<f64, N>::zeros(); 2];
+    for (i, vector) in vectors.into_iter().enumerate() {
+        for (all, own) in both
+            .iter_mut()
+            .zip([vector.at(poses, &[]), vector.rate(rates)])
+        {
+            all.fixed_rows_mut::<3>(3 * i).copy_from(&own);
+        }
+    }
+    both
 }
 
 /// A lumped muscle whose state is read at times: a placed configuration with rates `w` of the vectors, and the scalars there.
@@ -217,15 +223,6 @@ pub struct MuscleReading {
     charged: Option<Charged>,
     /// The scalar of its source, where that is ever other than zero.
     input: Option<usize>,
-}
-
-/// Electrical state of a muscle with a source.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SourceFlow {
-    /// Current from the source in A.
-    pub current: f64,
-    /// Power of the source in W.
-    pub power: f64,
 }
 
 impl Model {
@@ -286,9 +283,9 @@ impl MuscleReading {
         voltage.abs() / (of.layer_thickness * stretch) / MEGAVOLT_PER_METRE
     }
 
-    /// Current and power of its source while the voltage of the source is constant: `V ∂C/∂r·ṙ` with that through a leak, or
+    /// Current in A and power in W of its source while the voltage of the source is constant: `V ∂C/∂r·ṙ` with that through a leak, or
     /// `(V − Q/C)/R` through a resistor.
-    pub fn flow(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> Option<SourceFlow> {
+    pub fn flow(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> Option<[f64; 2]> {
         let of = &model.system.muscles[self.muscle];
         let span = model.spans[self.muscle];
         let (voltage, current) = match self.charged {
@@ -305,8 +302,7 @@ impl MuscleReading {
                 (voltage, (voltage - across) / of.circuit?.resistance?)
             }
         };
-        let power = voltage * current;
-        Some(SourceFlow { current, power })
+        Some([current, voltage * current])
     }
 
     /// Current in A and power in W that charge it while its voltage changes at a rate, at a placed instant: `C V̇` and `C V V̇`; none through
