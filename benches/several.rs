@@ -1,7 +1,6 @@
-//! Several solves of the trunk of `problems/elephant_trunk_effort.json`: at once in threads, and one after the other of a kept program.
+//! Several solves of the trunk of `problems/elephant_trunk_effort.json` at once: in threads, and of several motions in one program.
 //!
 //! `cargo bench --bench several -- [GOALS]`: goals in one thread and in two, in turn, and how many more two solve in the same time.
-//! `cargo bench --bench several -- --again`: a goal that moves, by a solver that keeps its program.
 //! `cargo bench --bench several -- --copies`: copies of one motion in one program, against one of them.
 //! `cargo bench --bench several -- --constants`: one motion with ten free parameters of several kinds, against the same without.
 //! `cargo bench --bench several -- --minutes 10`: goals in four threads against one thread, bit by bit, with the memory of the process.
@@ -9,10 +8,9 @@
 #[path = "../tests/common/random_goals.rs"]
 mod random_goals;
 
-use proboscis::control::problem::{BoundaryState, Combined, Control, Task};
-use proboscis::control::{BoundaryConditions, Motion, Motions, Transcription, guess};
+use proboscis::control::problem::{Combined, Control, Task};
+use proboscis::control::{Motion, Motions};
 use proboscis::files::read_problem;
-use proboscis::ipopt::{Options, Solver, Start};
 use proboscis::workflow::parallel_map::parallel_map;
 use proboscis::workflow::{Iterate, SolveRequest, optimise_together};
 use random_goals::{Goals, Kind, Solved, solved, trunk};
@@ -33,17 +31,13 @@ fn main() {
         .collect();
     let mut goals = Goals::new(SEED);
     match arguments.iter().map(String::as_str).collect::<Vec<_>>()[..] {
-        [] => {
-            throughput(&mut goals, 64);
-            again();
-        }
-        ["--again"] => again(),
+        [] => throughput(&mut goals, 64),
         ["--copies"] => copies(),
         ["--constants"] => constants(),
         [count] => throughput(&mut goals, count.parse().expect("a number of goals")),
         ["--minutes", length] => compare(&mut goals, length.parse().expect("minutes")),
         _ => panic!(
-            "expected a number of goals, --again, --copies, --constants, or --minutes and their number"
+            "expected a number of goals, --copies, --constants, or --minutes and their number"
         ),
     }
 }
@@ -161,97 +155,6 @@ fn memory() -> String {
         .split_whitespace()
         .collect::<Vec<_>>()
         .join(" ")
-}
-
-/// The goal of the trunk goes to and fro, a step each time; milliseconds without waits for a core.
-fn again() {
-    println!(
-        "| intervals | start | goal moves by | iterations at first | again: median | most | whole, ms | an iteration, ms |\n|--:|:--|--:|--:|--:|--:|--:|--:|"
-    );
-    let starts = [
-        ("primal and dual", Start::PrimalDual),
-        ("centred", Start::Centred),
-        ("primal", Start::Primal { mu_init: 1e-4 }),
-    ];
-    for intervals in [20, 40] {
-        for (name, start) in starts {
-            for step in [0.005, 0.02] {
-                let [first, again, most, whole, each] = follow(intervals, step, start);
-                println!(
-                    "| {intervals} | {name} | {:.1} % | {first:.0} | {again:.0} | {most:.0} | {whole:.1} | {each:.2} |",
-                    100.0 * step
-                );
-            }
-        }
-    }
-}
-
-/// Iterations of the first solve, median and most iterations of a later one, and the medians of its time and that of an iteration.
-fn follow(intervals: usize, step: f64, start: Start) -> [f64; 5] {
-    let changes = [format!("control.intervals={intervals}")];
-    let loaded = read_problem(&trunk(), &changes).expect("a kept problem");
-    let (system, Task::Control(control)) = (loaded.system, loaded.task) else {
-        panic!("a problem of control");
-    };
-    let h = control.duration.first() / intervals as f64;
-    let resolve = |factor: f64| {
-        let BoundaryState::RestAtVoltages(voltages, of) = &control.goal else {
-            panic!("a goal of rest");
-        };
-        let voltages = voltages.iter().map(|v| factor * v).collect();
-        let goal = BoundaryState::RestAtVoltages(voltages, *of);
-        let control = Control {
-            goal,
-            ..(*control).clone()
-        };
-        BoundaryConditions::resolve(&system, &control, h).expect("an equilibrium")
-    };
-    let (model, here) = resolve(1.0);
-    let ends: Vec<_> = (1..=4)
-        .map(|i| resolve(1.0 - step * f64::from(i)).1)
-        .collect();
-    let initial = guess(&model, &here, &control, h, None);
-    let program = Transcription::new(&model, &here, &control, &initial).expect("a program");
-    let point = program.start(&initial);
-    let mut go_on = |_: &_, _: &proboscis::ipopt::Reached<'_>| ControlFlow::Continue(());
-    let options = Options {
-        tolerance: control.solver.tolerance,
-        ..Options::default()
-    };
-    let mut solver = Solver::new(program, options.clone());
-    let first = solver.solve(&point, &mut go_on).expect("options of Ipopt");
-    assert!(first.status.is_solved());
-    let first = first.iterations.len() - 1;
-    solver.set_options(Options { start, ..options });
-    let (mut counts, mut whole, mut each) = (Vec::new(), Vec::new(), Vec::new());
-    let back = ends.iter().rev().skip(1).chain([&here]);
-    let round: Vec<_> = ends.iter().chain(back).collect();
-    for i in 0..10 * round.len() {
-        let (began, [_, waited]) = (Instant::now(), schedule());
-        solver
-            .program_mut()
-            .move_ends(round[i % round.len()])
-            .expect("the same program");
-        let found = solver.solve_again(&mut go_on).expect("options of Ipopt");
-        let seconds = began.elapsed().as_secs_f64() - (schedule()[1] - waited);
-        assert!(found.status.is_solved());
-        let iterations = found.iterations.len() - 1;
-        counts.push(iterations as f64);
-        whole.push(1e3 * seconds);
-        each.push(1e3 * seconds / iterations as f64);
-    }
-    let most = counts.iter().copied().fold(0.0, f64::max);
-    let median = |mut list: Vec<f64>| {
-        list.sort_by(f64::total_cmp);
-        list[list.len() / 2]
-    };
-    [
-        first as f64,
-        median(counts),
-        most,
-        median(whole),
-        median(each),
-    ]
 }
 
 /// Least seconds of a few solves of motions together, and their iterations.

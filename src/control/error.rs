@@ -35,12 +35,6 @@ pub enum BoundaryError {
         /// The value found and the one expected.
         reason: String,
     },
-    /// Start and goal cannot be moved in a program that stands.
-    #[error("start and goal need another program: {reason}")]
-    OtherProgram {
-        /// Difference.
-        reason: String,
-    },
     /// Ctrl-C was pressed, or the time allowed is over, before the problem was built.
     #[error("stopped while the problem was built ({0})")]
     Stopped(#[from] Stopped),

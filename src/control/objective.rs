@@ -58,11 +58,6 @@ impl Cost {
         self.weights = Weights::of(objective);
     }
 
-    /// The rest voltages before and after in kV.
-    pub(super) fn ends_mut(&mut self) -> &mut [Option<Vec<f64>>; 2] {
-        &mut self.ends
-    }
-
     /// Returns true if neighbouring intervals couple.
     pub fn couples_intervals(&self) -> bool {
         self.weights.rate != 0.0 && self.span.intervals > 1

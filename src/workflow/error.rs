@@ -99,9 +99,7 @@ impl WorkflowError {
             BoundaryError::Parameter { name, reason } => {
                 ("free", format!("parameter \"{name}\": {reason}"))
             }
-            BoundaryError::Overdetermined { .. } | BoundaryError::OtherProgram { .. } => {
-                ("goal", error.to_string())
-            }
+            BoundaryError::Overdetermined { .. } => ("goal", error.to_string()),
         };
         Self::problem(format!("{task}.{key}"), reason)
     }

@@ -35,7 +35,6 @@ mod measured;
 mod meshes;
 mod motions;
 mod motions_shared;
-mod moved;
 mod optimality;
 mod peak_voltage;
 mod periodic;

@@ -64,7 +64,7 @@ const WORDS: [Retired; 21] = [
 ];
 
 /// Retired paths below `src`, without `.rs`, and those in their place.
-const PATHS: [(&str, &str); 53] = [
+const PATHS: [(&str, &str); 52] = [
     ("app/continuation", "app/kept/resume_file"),
     ("app/digest", "app/kept/record"),
     ("app/exchanged", "app/blocks"),
@@ -86,10 +86,6 @@ const PATHS: [(&str, &str); 53] = [
     ("control/ends", "control/endpoint_checks"),
     ("control/evened", "control/guess"),
     ("control/meshes", "control/boundary_state"),
-    (
-        "control/transcription/moved",
-        "control/transcription/update_endpoints",
-    ),
     (
         "control/transcription/placed",
         "control/transcription/segment",

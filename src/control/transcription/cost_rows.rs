@@ -238,8 +238,7 @@ pub(super) struct EnergyRow {
     pub(super) measure: usize,
     /// Vectors that it reads.
     pub(super) vectors: Vec<usize>,
-    /// Its number, and the scalar of its voltage.
-    source: usize,
+    /// Scalar of its voltage.
     pub(super) scalar: usize,
     /// Slot of the second derivative by the voltage.
     pub(super) square: usize,
@@ -284,6 +283,7 @@ pub(super) fn energy_rows(
     let sources = sources(costs, &model.system);
     let first = model.measured.len() - sources.len();
     let layout = model.action.layout();
+    let voltages = rest.each_ref().map(Option::as_ref);
     let measured = sources.iter().zip(&model.measured[first..]);
     let rows = measured.filter_map(|(&source, measure)| {
         let (measure, scalar) = (*measure, model.variables.input(source));
@@ -298,24 +298,18 @@ pub(super) fn energy_rows(
             measure,
             mixed: mixed(model, &vectors, scalar, layout),
             vectors,
-            source,
             scalar,
             square: layout
                 .scalars
                 .find(scalar, scalar)
                 .expect("a voltage has a curvature of its own"),
             weights: [SourceEnergy::Electrical, SourceEnergy::Mechanical].map(weight),
-            ends: ends(rest, source),
+            // A voltage that is not known is none.
+            ends: voltages.map(|row| row.map_or(0.0, |row| row[source])),
             intervals,
         })
     });
     rows.collect()
-}
-
-/// Voltages of a source before the start and after the end; 0 where they are not known.
-fn ends(rest: &[Option<Vec<f64>>; 2], source: usize) -> [f64; 2] {
-    let voltages = rest.each_ref().map(Option::as_ref);
-    voltages.map(|row| row.map_or(0.0, |row| row[source]))
 }
 
 /// The coordinates that vectors depend on, with the slots of their couplings with a voltage: those of the energy of the muscle.
@@ -337,11 +331,6 @@ fn mixed(
 }
 
 impl EnergyRow {
-    /// Takes other voltages at rest before and after.
-    pub(super) fn move_ends(&mut self, rest: &[Option<Vec<f64>>; 2]) {
-        self.ends = ends(rest, self.source);
-    }
-
     /// Returns true if voltages of neighbouring intervals couple: in the electrical energy.
     pub(super) fn couples_intervals(&self) -> bool {
         self.weights[0] != 0.0

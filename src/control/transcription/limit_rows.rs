@@ -331,19 +331,6 @@ impl Step {
         }
     }
 
-    /// Takes other inputs at rest before and after.
-    pub(super) fn move_ends(&mut self, model: &Model, rest: &[Option<Vec<f64>>; 2]) {
-        if !self.is_impulse {
-            self.ends = ends(model, rest);
-        }
-    }
-
-    /// Returns true if inputs at rest are known where these are.
-    pub(super) fn has_ends(&self, rest: &[Option<Vec<f64>>; 2]) -> bool {
-        self.is_impulse
-            || self.ends.each_ref().map(Option::is_some) == rest.each_ref().map(Option::is_some)
-    }
-
     /// Intervals before which a step is limited, the end counted as one: the step there is that of a place that is given.
     pub(super) fn at(&self, is_end_given: bool) -> Range<usize> {
         let [first, last] = self.ends.each_ref().map(Option::is_some);

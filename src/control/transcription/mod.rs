@@ -8,8 +8,8 @@
 //! by the length of the system, and the interval length by its guess, so that one tolerance means the same everywhere.
 //!
 //! A [`Transcription`] has constant parts, `layout` (unknowns, equations, limits), `cost_rows` and `structure` (entries of the derivatives),
-//! and one that every evaluation changes, `workspace`. Its methods are in `program` (the trait [`Nlp`]), `point`, `interval_pass`, `scaling`,
-//! `costs` and `update_endpoints`.
+//! and one that every evaluation changes, `workspace`. Its methods are in `program` (the trait [`Nlp`]), `point`, `interval_pass`, `scaling` and
+//! `costs`.
 
 mod cost_rows;
 mod costs;
@@ -22,11 +22,10 @@ mod program;
 mod scaling;
 mod segment;
 pub(super) mod structure;
-mod update_endpoints;
 mod workspace;
 
 use crate::control::BoundaryError;
-use crate::control::boundary_conditions::{BoundaryConditions, Rests};
+use crate::control::boundary_conditions::BoundaryConditions;
 use crate::control::guess::InitialGuess;
 use crate::control::limits::BoundedQuantity;
 use crate::control::numbering::Numbering;
@@ -56,10 +55,6 @@ pub struct Transcription<'m> {
     row_bounds: Bounds,
     /// Momentum of the start.
     momentum: StartMomentum,
-    /// Part of the system that comes to rest at the end.
-    rests: Rests,
-    /// Goals and limits, those that nothing can change included.
-    bounded: usize,
     /// Second derivatives of an interval that are asked for.
     sides: BlockMask,
     workspace: Workspace,
@@ -118,8 +113,6 @@ impl<'m> Transcription<'m> {
             row_bounds: Bounds::default(),
             momentum,
             layout,
-            rests: boundary.goal.rests,
-            bounded: boundary.limits.list.len(),
             sides: BlockMask::ALL,
             workspace,
         };
