@@ -47,8 +47,8 @@ pub use loop_rates::{IndependentChanges, rates_in_loops};
 pub use midpoint::{Midpoint, Stepper};
 pub use momenta::{Start, last_momentum, rates_of_momentum};
 pub use observe::{observations, observed};
-pub use resolution::{Balance, LocalError, distance_between, local_error, local_error_of};
-pub use simulate::{Lengths, StepControl, TimeGrid, go_on, simulate, simulate_by, simulate_within};
+pub use resolution::{Balance, LocalError, distance_between, local_error};
+pub use simulate::{Lengths, StepControl, TimeGrid, go_on, simulate, simulate_by};
 pub use singular_configurations::{
     BeyondLaw, OutOfDomain, OutOfRange, largest_stretch, muscle_without_length, out_of_domain,
     out_of_range, part_beyond_law, reversed_muscle,

@@ -210,18 +210,9 @@ impl LocalError {
     }
 }
 
-/// Estimates the error of a motion by a method of an order; nothing where it has fewer than order + 1 steps.
+/// Estimates the error of a motion, whose poses and markers are known, by a method of an order; nothing where it has fewer than order + 1
+/// steps.
 pub fn local_error(
-    model: &Model,
-    discrete: &DiscreteTrajectory,
-    order: usize,
-) -> Option<LocalError> {
-    let motion = Trajectory::from_discrete(model, discrete);
-    local_error_of(model, discrete, &motion, order)
-}
-
-/// The same of a motion whose poses and markers are known.
-pub fn local_error_of(
     model: &Model,
     discrete: &DiscreteTrajectory,
     motion: &Trajectory,

@@ -56,7 +56,8 @@ pub enum Lengths<'a> {
     Controlled(StepControl<'a>),
 }
 
-/// Lengths of steps that a tolerance controls.
+/// Lengths of steps that a tolerance controls, by the midpoint rule: their local error, by the change of the last rates, stays below a tolerance
+/// per time. Steps of unequal length keep momentum maps, and no longer the energy over long times.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct StepControl<'a> {
     /// Length of the motion in ms.
@@ -67,23 +68,6 @@ pub struct StepControl<'a> {
     pub tolerance: f64,
     /// Times in ms, growing, at which voltages may switch: steps end there.
     pub switches: &'a [f64],
-}
-
-/// Integrates by the midpoint rule with steps whose local error, by the change of the last rates, stays below a tolerance per
-/// time. Steps of unequal length keep momentum maps, and no longer the energy over long times.
-///
-/// `drive` and `observer` are as in [`simulate`].
-pub fn simulate_within(
-    solving: Solving,
-    model: &Model,
-    start: &Start,
-    control: StepControl<'_>,
-    drive: impl Drive,
-    observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
-) -> (DiscreteTrajectory, Option<StepError>) {
-    let begun = DiscreteTrajectory::at(start);
-    let lengths = Lengths::Controlled(control);
-    go_on(solving, model, begun, lengths, drive, observer)
 }
 
 /// Resumes a motion that has begun, up to the number of steps or the duration of the whole: it becomes what it would have become without

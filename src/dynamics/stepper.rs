@@ -72,11 +72,6 @@ impl<E: Equations> Steps<E> {
         self.updates.name()
     }
 
-    /// Time in ms.
-    pub fn time(&self) -> f64 {
-        self.equations.now().time
-    }
-
     /// Coordinates now, and the multipliers of the step that led away from the instant before.
     pub fn coordinates(&self) -> &[f64] {
         self.equations.now().z

@@ -3,7 +3,7 @@
 use crate::control::problem::{Afterwards, Disturbed, FeedbackControl, Simulation, Voltages};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
-    DiscreteTrajectory, EnergyExchange, LocalError, local_error_of, out_of_domain, out_of_range,
+    DiscreteTrajectory, EnergyExchange, LocalError, local_error, out_of_domain, out_of_range,
 };
 use crate::math::significant;
 use crate::model::{Model, System};
@@ -91,7 +91,7 @@ impl SimulationResult {
         let order = task.solving.integrator.order();
         let ends = [task.start.voltages(), None];
         let outside = warnings::outside_domain(&out_of_domain(model, discrete));
-        let local = local_error_of(model, discrete, trajectory, order);
+        let local = local_error(model, discrete, trajectory, order);
         let neglected = local.map(|local| match self.stopped {
             None => warnings::confirmed(&self.simulated, task, trajectory, local),
             Some(_) => local,

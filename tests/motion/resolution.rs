@@ -48,8 +48,14 @@ fn apart(coarse: &Simulated, fine: &Simulated, times: usize) -> f64 {
     pairs.map(distance).fold(0.0, f64::max)
 }
 
+/// The error that is told of a motion.
+fn error_of(model: &Model, discrete: &DiscreteTrajectory, order: usize) -> Option<LocalError> {
+    let motion = Trajectory::from_discrete(model, discrete);
+    local_error(model, discrete, &motion, order)
+}
+
 pub(crate) fn estimate(run: &Simulated) -> LocalError {
-    local_error(&run.model, &run.discrete, 2).expect("there are steps enough")
+    error_of(&run.model, &run.discrete, 2).expect("there are steps enough")
 }
 
 #[test]
@@ -310,7 +316,7 @@ fn the_estimate_is_of_the_size_of_the_error_for_every_integrator() {
             .map(|(a, b)| (a - b).abs())
             .fold(0.0, f64::max);
         let (model, discrete) = slider(h, integrator, steps);
-        let told = local_error(&model, &discrete, integrator.order()).unwrap();
+        let told = error_of(&model, &discrete, integrator.order()).unwrap();
         println!(
             "{integrator:?}: told {:e}, truly {error:e} of {}",
             told.error, told.path
@@ -327,11 +333,11 @@ fn the_estimate_is_of_the_size_of_the_error_for_every_integrator() {
 #[test]
 fn the_step_that_would_do_does() {
     let (model, discrete) = slider(2.0, Integrator::Midpoint, 200);
-    let told = local_error(&model, &discrete, 2).unwrap();
+    let told = error_of(&model, &discrete, 2).unwrap();
     let better = told.step_for(0.2 * told.relative());
     let steps = (400.0 / better).ceil();
     let (model, discrete) = slider(400.0 / steps, Integrator::Midpoint, steps as usize);
-    let after = local_error(&model, &discrete, 2).unwrap();
+    let after = error_of(&model, &discrete, 2).unwrap();
     println!("{} by {better} ms to {}", told.relative(), after.relative());
     assert!(after.relative() < 0.25 * told.relative() && after.relative() > 0.1 * told.relative());
 }

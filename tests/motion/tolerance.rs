@@ -3,7 +3,7 @@
 use crate::common::{at_reference, trunk};
 use assert_cmd::Command;
 use proboscis::dynamics::{
-    DiscreteTrajectory, Solving, Start, StepControl, StepError, simulate_by, simulate_within,
+    DiscreteTrajectory, Lengths, Solving, Start, StepControl, StepError, go_on, simulate_by,
 };
 use proboscis::model::{Coordinates, Model};
 use serde_json::Value;
@@ -27,14 +27,11 @@ fn steps_by_a_tolerance_keep_it() {
             tolerance,
             switches: &[150.0, 400.0],
         };
-        simulate_within(
-            Solving::default(),
-            &model,
-            &start,
-            control,
-            voltages,
-            |_| ControlFlow::Continue(()),
-        )
+        let begun = DiscreteTrajectory::at(&start);
+        let lengths = Lengths::Controlled(control);
+        go_on(Solving::default(), &model, begun, lengths, voltages, |_| {
+            ControlFlow::Continue(())
+        })
     };
     let go_on = |_: &_| ControlFlow::Continue(());
     let (exact, _) = simulate_by(
