@@ -12,7 +12,7 @@
 use crate::control::boundary_conditions::{
     BoundaryConditions, Rests, TerminalState, check_muscles, resolve_start, rest_at,
 };
-use crate::control::costs::{EnergyCost, resisted, sources};
+use crate::control::costs::{resisted, sources};
 use crate::control::error::BoundaryError;
 use crate::control::goal::instant_at;
 use crate::control::limits::{BoundedQuantity, Length, Limits, When};
@@ -35,7 +35,7 @@ impl BoundaryConditions {
         control: &Control,
         h0: f64,
     ) -> Result<(Model, Self), BoundaryError> {
-        let (model, boundary) = Self::of_goal(system, control, h0)?;
+        let (model, boundary) = Self::with_parameters(system, control, h0, false)?;
         let goal = match model.solids.is_empty() {
             true => None,
             false => control.goal.resting(Rest::Bodies),
@@ -55,7 +55,7 @@ impl BoundaryConditions {
             goal,
             ..control.clone()
         };
-        let (model, mut boundary) = Self::of_goal(system, &eased, h0)?;
+        let (model, mut boundary) = Self::with_parameters(system, &eased, h0, false)?;
         boundary.notes.push(format!(
             "{} voltages cannot bring all {} coordinates of elastic blocks and bodies to rest: at the goal {} rest, as by \"rest\": \"bodies\"",
             layout.sought_inputs(),
@@ -76,15 +76,6 @@ impl BoundaryConditions {
         h0: f64,
     ) -> Result<(Model, Self), BoundaryError> {
         Self::with_parameters(system, control, h0, true)
-    }
-
-    /// The same, where everything rests unless the goal says otherwise.
-    fn of_goal(
-        system: &System,
-        control: &Control,
-        h0: f64,
-    ) -> Result<(Model, Self), BoundaryError> {
-        Self::with_parameters(system, control, h0, false)
     }
 
     /// Model and boundary; parameters are held at their guesses where `are_held`.
@@ -179,7 +170,7 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
             for (&joint, &near) in angles {
                 let name = format!("goal of {}", system.joints[joint].name);
                 let quantity = Quantity::joint(joint, near);
-                limits.add_equality(When::Goal, quantity, near, name);
+                limits.add_at(When::Goal, quantity, [near; 2], name);
             }
         }
         _ => {}
@@ -190,7 +181,7 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
         goal_rows::add_orientations(&mut limits, system, &waypoint.orientations, when, at);
         for (&joint, &near) in &waypoint.angles {
             let name = format!("{at} coordinate of {}", system.joints[joint].name);
-            limits.add_equality(when, Quantity::joint(joint, near), near, name);
+            limits.add_at(when, Quantity::joint(joint, near), [near; 2], name);
         }
     }
     free_parameters::in_intervals(&mut limits, control);
@@ -210,7 +201,7 @@ fn with_quantities(
     let curved = curved.map(|(i, _)| quantities.len() + i).collect();
     quantities.extend(paid.iter().map(|cost| cost.quantity.clone()));
     let energies = &control.objective.energies;
-    quantities.extend(resisted(energies, system).map(EnergyCost::power));
+    quantities.extend(resisted(energies, system).map(|cost| cost.integral().quantity));
     let charged = sources(energies, system).into_iter();
     quantities.extend(charged.map(|muscle| Quantity::of(What::Capacitance(muscle))));
     Analysis {

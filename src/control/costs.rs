@@ -42,9 +42,14 @@ impl EnergyCost {
         muscle.is_some_and(Muscle::is_behind_resistor)
     }
 
-    /// The power of its source in W, through a resistor.
-    pub(super) fn power(&self) -> Quantity {
-        Quantity::power(self.source)
+    /// The same as the integral of the power of its source in W, through a resistor.
+    pub(super) fn integral(&self) -> QuantityCost {
+        QuantityCost {
+            quantity: Quantity::power(self.source),
+            weight: self.weight,
+            function: CostFunction::Itself,
+            during: During::Motion,
+        }
     }
 }
 

@@ -31,7 +31,7 @@ pub(super) fn add_places(
         for (axis, value) in place.given().filter(|(axis, _)| is_free(*axis)) {
             let name = format!("{at} {} of marker {name}", AXES[axis]);
             let quantity = Quantity::marker_place(marker, axis);
-            limits.add_equality(when, quantity, value, name);
+            limits.add_at(when, quantity, [value; 2], name);
         }
     }
 }
@@ -47,7 +47,7 @@ pub(super) fn add_rest<'p>(
         for axis in (0..3).filter(|&axis| !system.holds_marker(marker, axis)) {
             let name = format!("rest at the goal, {} of marker {name}", AXES[axis]);
             let quantity = Quantity::step(What::Place { marker, axis }, 1.0);
-            limits.add_equality(When::Goal, quantity, 0.0, name);
+            limits.add_at(When::Goal, quantity, [0.0; 2], name);
         }
     }
 }
@@ -69,10 +69,8 @@ pub(super) fn add_orientations(
         } in orientation.products()
         {
             let quantity = Quantity::of(What::Direction { body, axis, along });
-            match is_acute {
-                true => limits.add_lower(when, quantity, 0.0, name.clone()),
-                false => limits.add_equality(when, quantity, 0.0, name.clone()),
-            }
+            let upper = if is_acute { f64::INFINITY } else { 0.0 };
+            limits.add_at(when, quantity, [0.0, upper], name.clone());
         }
     }
 }

@@ -10,6 +10,7 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::fmt::Debug;
+use std::ops::Deref;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -229,21 +230,13 @@ impl Earlier {
     pub fn new(earlier: impl EarlierSolution + 'static) -> Self {
         Self(Arc::new(earlier))
     }
+}
 
-    /// The solution, for this model.
-    ///
-    /// # Errors
-    /// As of [`EarlierSolution::solution`].
-    pub fn solution(
-        &self,
-        model: &Model,
-    ) -> Result<Cow<'_, Solution>, Box<dyn Error + Send + Sync>> {
-        self.0.solution(model)
-    }
+impl Deref for Earlier {
+    type Target = dyn EarlierSolution;
 
-    /// The file that it is read from; none where it is in memory.
-    pub fn file(&self) -> Option<&Path> {
-        self.0.file()
+    fn deref(&self) -> &Self::Target {
+        &*self.0
     }
 }
 

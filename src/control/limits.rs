@@ -122,8 +122,7 @@ impl Limits {
 
     /// Adds a limit.
     fn add(&mut self, quantity: Quantity, bounds: [f64; 2], name: String) {
-        let bounded = BoundedQuantity::new(quantity, bounds, When::Everywhere, name);
-        self.list.push(bounded);
+        self.add_at(When::Everywhere, quantity, bounds, name);
     }
 
     /// Adds a limit of a rate by the steps of a quantity: bounds of the steps in their unit, or where the length of the intervals is free
@@ -234,15 +233,9 @@ impl Limits {
         }
     }
 
-    /// Adds an equality at a single instant.
-    pub fn add_equality(&mut self, when: When, quantity: Quantity, value: f64, name: String) {
-        let bounded = BoundedQuantity::new(quantity, [value; 2], when, name);
-        self.list.push(bounded);
-    }
-
-    /// Adds a lower bound at a single instant.
-    pub fn add_lower(&mut self, when: When, quantity: Quantity, lower: f64, name: String) {
-        let bounded = BoundedQuantity::new(quantity, [lower, f64::INFINITY], when, name);
+    /// Adds bounds, an equality where both are one.
+    pub fn add_at(&mut self, when: When, quantity: Quantity, bounds: [f64; 2], name: String) {
+        let bounded = BoundedQuantity::new(quantity, bounds, when, name);
         self.list.push(bounded);
     }
 

@@ -9,28 +9,13 @@
 use crate::control::costs::Objective;
 use crate::control::numbering::Span;
 
-/// Weights of effort, rate and duration.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Weights {
-    effort: f64,
-    rate: f64,
-    duration: f64,
-}
-
-impl Weights {
-    fn of(objective: &Objective) -> Self {
-        Self {
-            effort: objective.effort,
-            rate: objective.rate,
-            duration: objective.duration,
-        }
-    }
-}
-
 /// The objective with the voltages at rest before and after.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
-    weights: Weights,
+    /// Weights of effort, rate and duration.
+    effort: f64,
+    rate: f64,
+    duration: f64,
     scalars: usize,
     span: Span,
     /// Rest voltages before the first and after the last interval in kV.
@@ -46,7 +31,9 @@ impl Cost {
         ends: [Option<Vec<f64>>; 2],
     ) -> Self {
         Self {
-            weights: Weights::of(objective),
+            effort: objective.effort,
+            rate: objective.rate,
+            duration: objective.duration,
             scalars,
             span,
             ends,
@@ -55,17 +42,19 @@ impl Cost {
 
     /// Takes the weights of another objective.
     pub(super) fn weigh(&mut self, objective: &Objective) {
-        self.weights = Weights::of(objective);
+        self.effort = objective.effort;
+        self.rate = objective.rate;
+        self.duration = objective.duration;
     }
 
     /// Returns true if neighbouring intervals couple.
     pub fn couples_intervals(&self) -> bool {
-        self.weights.rate != 0.0 && self.span.intervals > 1
+        self.rate != 0.0 && self.span.intervals > 1
     }
 
     /// Returns true if voltages enter by their squares alone.
     pub fn is_of_squares(&self) -> bool {
-        self.weights.rate == 0.0
+        self.rate == 0.0
     }
 
     /// Voltage s of interval k, where k = 0 is the rest before the first.
@@ -96,28 +85,26 @@ impl Cost {
     /// f at voltages v (kV, interval by interval) and interval length τ (s).
     pub fn value(&self, v: &[f64], tau: f64) -> f64 {
         let (effort, rate) = self.squares(v);
-        let w = &self.weights;
-        let mut sum = w.effort * tau * effort + w.duration * self.span.end as f64 * tau;
-        if w.rate != 0.0 {
-            sum += w.rate * rate / tau;
+        let mut sum = self.effort * tau * effort + self.duration * self.span.end as f64 * tau;
+        if self.rate != 0.0 {
+            sum += self.rate * rate / tau;
         }
         sum
     }
 
     /// ∂f/∂v into `out`; returns ∂f/∂τ.
     pub fn gradient(&self, v: &[f64], tau: f64, out: &mut [f64]) -> f64 {
-        let w = &self.weights;
         for (g, x) in out.iter_mut().zip(v) {
-            *g = 2.0 * w.effort * tau * x;
+            *g = 2.0 * self.effort * tau * x;
         }
         self.add_rate_gradient(v, tau, out);
         let (effort, rate) = self.squares(v);
-        w.effort * effort - w.rate * rate / (tau * tau) + w.duration * self.span.end as f64
+        self.effort * effort - self.rate * rate / (tau * tau) + self.duration * self.span.end as f64
     }
 
     /// Adds ∂/∂v of the rate term.
     fn add_rate_gradient(&self, v: &[f64], tau: f64, out: &mut [f64]) {
-        if self.weights.rate == 0.0 {
+        if self.rate == 0.0 {
             return;
         }
         for k in 0..=self.span.intervals {
@@ -125,7 +112,7 @@ impl Cost {
                 let Some(jump) = self.jump(v, k, s) else {
                     continue;
                 };
-                let slope = 2.0 * self.weights.rate / tau * jump;
+                let slope = 2.0 * self.rate / tau * jump;
                 if let Some(before) = self.span.before(k) {
                     out[before * self.scalars + s] -= slope;
                 }
@@ -141,23 +128,22 @@ impl Cost {
         let before = self.span.before(k).is_some() || self.ends[0].is_some();
         let after = k + 1 < self.span.intervals || self.span.is_closed || self.ends[1].is_some();
         let jumps = f64::from(u8::from(before) + u8::from(after));
-        2.0 * self.weights.effort * tau + 2.0 * self.weights.rate / tau * jumps
+        2.0 * self.effort * tau + 2.0 * self.rate / tau * jumps
     }
 
     /// ∂²f of one voltage with the same voltage of the interval before.
     pub fn coupling(&self, tau: f64) -> f64 {
-        -2.0 * self.weights.rate / tau
+        -2.0 * self.rate / tau
     }
 
     /// ∂²f/∂v∂τ into `out`; returns ∂²f/∂τ².
     pub fn horizon(&self, v: &[f64], tau: f64, out: &mut [f64]) -> f64 {
-        let w = &self.weights;
         out.fill(0.0);
         self.add_rate_gradient(v, tau, out);
         for (g, x) in out.iter_mut().zip(v) {
-            *g = 2.0 * w.effort * x - *g / tau;
+            *g = 2.0 * self.effort * x - *g / tau;
         }
         let (_, rate) = self.squares(v);
-        2.0 * w.rate * rate / (tau * tau * tau)
+        2.0 * self.rate * rate / (tau * tau * tau)
     }
 }

@@ -35,8 +35,7 @@ use crate::control::transcription::layout::Layout;
 use crate::control::transcription::limit_rows::Site;
 use crate::coordinates::{Reduced, StepPattern};
 use crate::functional::{Outer, Sample};
-use crate::math::Signal;
-use crate::model::{Model, Quantity, Time};
+use crate::model::{Model, Time};
 use std::ops::Range;
 
 /// s in a ms.
@@ -45,9 +44,7 @@ pub(super) const MILLISECOND: f64 = 1e-3;
 /// A cost of a quantity before it is summed.
 #[derive(Clone, Debug)]
 pub(super) struct CostRow {
-    weight: f64,
-    function: Function,
-    during: During,
+    cost: QuantityCost,
     /// Index among the measures of its site.
     pub(super) measure: usize,
     pub(super) site: Site,
@@ -64,15 +61,6 @@ pub(super) struct CostRow {
     /// True if the length of the interval is part of the quantity.
     pub(super) reads_rates: bool,
     intervals: usize,
-}
-
-/// Function of a quantity that is summed.
-#[derive(Clone, Debug)]
-enum Function {
-    /// The square of the deviation from a reference.
-    Square(Signal),
-    /// The quantity.
-    Itself,
 }
 
 /// A summand of the objective with its derivatives by the value m of its quantity and by the interval length h in ms.
@@ -95,25 +83,16 @@ pub(super) fn cost_rows(
     limits: usize,
     intervals: usize,
 ) -> Vec<CostRow> {
-    let squares = costs.iter().map(|cost| {
-        let function = match &cost.function {
-            CostFunction::Square { reference } => Function::Square(reference.clone()),
-            CostFunction::Itself => Function::Itself,
-        };
-        (cost.quantity.clone(), cost.weight, function, cost.during)
-    });
-    let powers = resisted(energies, &model.system)
-        .map(|cost| (cost.power(), cost.weight, Function::Itself, During::Motion));
-    let row = |((quantity, weight, function, during), measure): (_, &Option<usize>)| {
-        let quantity: Quantity = quantity;
+    let powers = resisted(energies, &model.system).map(EnergyCost::integral);
+    let row = |(cost, measure): (QuantityCost, &Option<usize>)| {
         let measure = (*measure)?;
-        let site = Site::from_quantity(&quantity);
+        let site = Site::from_quantity(&cost.quantity);
         let reads = site.measure(model, measure);
         let mut vectors = reads.vectors();
         vectors.sort_unstable();
         vectors.dedup();
         let count = intervals + 2 - site.sides();
-        let at = match during {
+        let at = match cost.during {
             During::Motion => 0..count,
             During::End => count - 1..count,
             During::At(part) => {
@@ -122,34 +101,29 @@ pub(super) fn cost_rows(
             }
         };
         Some(CostRow {
-            weight,
-            function,
-            during,
             measure,
             site,
             at,
             vectors,
             scalars: reads.scalars(),
-            period: quantity.period(&model.system),
-            rate_factor: quantity.rate_factor(&model.system),
+            period: cost.quantity.period(&model.system),
+            rate_factor: cost.quantity.rate_factor(&model.system),
             reads_rates: reads.reads_rates(),
             intervals,
+            cost,
         })
     };
-    let measured = &model.measured[limits..];
-    squares
-        .chain(powers)
-        .zip(measured)
-        .filter_map(row)
-        .collect()
+    let paid = costs.iter().cloned().chain(powers);
+    let measured = paid.zip(&model.measured[limits..]);
+    measured.filter_map(row).collect()
 }
 
 impl CostRow {
     /// Its summand at instant or interval k, where the quantity is m.
     pub(super) fn summand(&self, m: f64, k: usize, h: f64) -> Summand {
-        let weight = self.weight;
+        let weight = self.cost.weight;
         // φ and ∂φ/∂h.
-        let [factor, by_h] = match self.during {
+        let [factor, by_h] = match self.cost.during {
             During::Motion => {
                 let is_end = self.site == Site::Instants && (k == 0 || k == self.intervals);
                 let part = if is_end { 0.5 } else { 1.0 } * MILLISECOND;
@@ -157,15 +131,15 @@ impl CostRow {
             }
             During::End | During::At(_) => [1.0, 0.0],
         };
-        match &self.function {
-            Function::Itself => Summand {
+        match &self.cost.function {
+            CostFunction::Itself => Summand {
                 value: weight * factor * m,
                 outer: Outer::linear(weight * factor),
                 by_h: weight * by_h * m,
                 by_value_and_h: weight * by_h,
                 by_h_twice: 0.0,
             },
-            Function::Square(reference) => {
+            CostFunction::Square { reference } => {
                 let steps = match self.site {
                     Site::Instants => k as f64,
                     Site::Intervals => k as f64 + 0.5,
