@@ -106,97 +106,13 @@ pub fn go_on(
         _ => {
             let mut stepper = Stepper::new(model, &start.z, &start.momentum, solving);
             stepper.equations.time = start.time;
-            match lengths {
-                Lengths::Equal(_) | Lengths::Between(_) => {
-                    record(&mut stepper, lengths, &drive, observer, &mut discrete)
-                }
-                Lengths::Controlled(control) => {
-                    if let Some(rates) = &start.rates {
-                        stepper.equations.rates.copy_from_slice(rates);
-                    }
-                    controlled(&mut stepper, control, &drive, observer, &mut discrete)
-                }
+            if let (Lengths::Controlled(_), Some(rates)) = (lengths, &start.rates) {
+                stepper.equations.rates.copy_from_slice(rates);
             }
+            record(&mut stepper, lengths, &drive, observer, &mut discrete)
         }
     };
     (discrete, failure)
-}
-
-/// Takes steps that a tolerance controls and records them; returns why they end early.
-fn controlled(
-    stepper: &mut Stepper<'_>,
-    control: StepControl<'_>,
-    drive: &dyn Drive,
-    mut observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
-    discrete: &mut DiscreteTrajectory,
-) -> Option<StepError> {
-    let StepControl {
-        duration,
-        first,
-        tolerance,
-        switches,
-    } = control;
-    let n = stepper.momentum().len();
-    let mut k = discrete.intervals();
-    let mut time = discrete.times[k];
-    if !stepper.take(&discrete.end) {
-        return Some(StepError::Foreign { time });
-    }
-    let mut wanted = discrete.end.wanted.unwrap_or(first);
-    let tolerance = *discrete.end.tolerance.get_or_insert(tolerance);
-    let mut failure = None;
-    while time < duration * (1.0 - 1e-12) {
-        let mut later = switches.iter().filter(|&&at| at > time * (1.0 + 1e-12));
-        let end = later.next().copied().unwrap_or(duration).min(duration);
-        let left = end - time;
-        let mut earlier = switches.iter().filter(|&&at| at <= time * (1.0 + 1e-12));
-        let begin = earlier.next_back().copied().unwrap_or(0.0);
-        // The last two steps before an end share what is left, and there are two between any two ends.
-        let h = match left / wanted {
-            parts if parts <= 1.0 && time > begin => left,
-            parts if parts < 2.0 => 0.5 * left,
-            _ => wanted,
-        };
-        let begun = time;
-        let to = if h == left { end } else { time + h };
-        // Behind a jump of voltages the change of the rates says more than the error: two steps may use a part of the tolerance.
-        let is_behind = k < 2 || discrete.times[k - 1] <= begin * (1.0 + 1e-12);
-        let at_jump = match is_behind {
-            true => AT_JUMPS * tolerance / (1 + switches.len()) as f64,
-            false => 0.0,
-        };
-        let allowed = [tolerance / duration, at_jump];
-        let step = match stepper.step_within([time, to], h, LEAST * duration, allowed, drive) {
-            Ok(step) => step,
-            Err(StepError::Stopped { .. }) => break,
-            Err(error) => {
-                failure = Some(error);
-                break;
-            }
-        };
-        time = if step.taken == left {
-            end
-        } else {
-            time + step.taken
-        };
-        wanted = if step.taken == h {
-            step.next.max(wanted)
-        } else {
-            step.next
-        };
-        discrete.z[k][n..n + step.multipliers.len()].copy_from_slice(&step.multipliers);
-        discrete.push([begun, time], stepper, drive);
-        discrete.end.wanted = Some(wanted);
-        discrete.end.tolerance = Some(tolerance);
-        k += 1;
-        failure = open_loop(stepper, discrete);
-        if failure.is_some() || observer(discrete).is_break() {
-            break;
-        }
-    }
-    discrete.report = stepper.report();
-    discrete.solver = stepper.solver();
-    failure
 }
 
 impl DiscreteTrajectory {
@@ -273,7 +189,16 @@ impl Lengths<'_> {
     }
 }
 
-/// Takes the steps that are given and records them; returns why they end early.
+/// A step that was taken between two times in ms.
+struct Taken {
+    step: [f64; 2],
+    /// Multipliers at its start.
+    multipliers: Vec<f64>,
+    /// Length in ms that the next one may have, where a tolerance controls it.
+    wanted: Option<f64>,
+}
+
+/// Takes steps of these lengths and records them; returns why they end early.
 fn record<E: Equations>(
     stepper: &mut Steps<E>,
     lengths: Lengths<'_>,
@@ -289,21 +214,28 @@ fn record<E: Equations>(
         return Some(StepError::Foreign { time });
     }
     for k in done.. {
-        let Some([from, to, h]) = lengths.step(k) else {
-            break;
+        let taken = match lengths {
+            Lengths::Controlled(control) => control.step(stepper, drive, discrete),
+            given => given.step(k).map(|[from, to, h]| {
+                let multipliers = stepper.go([from, to], h, drive);
+                multipliers.map(|multipliers| Taken {
+                    step: [from, to],
+                    multipliers,
+                    wanted: discrete.end.wanted,
+                })
+            }),
         };
-        match stepper.go([from, to], h, drive) {
-            Ok(multipliers) => {
+        match taken {
+            None | Some(Err(StepError::Stopped { .. })) => break,
+            Some(Err(error)) => failure = Some(error),
+            Some(Ok(taken)) => {
+                let multipliers = taken.multipliers;
                 discrete.z[k][n..n + multipliers.len()].copy_from_slice(&multipliers);
-                discrete.push([from, to], stepper, drive);
-            }
-            Err(StepError::Stopped { .. }) => break,
-            Err(error) => {
-                failure = Some(error);
-                break;
+                discrete.push(taken.step, stepper, drive);
+                discrete.end.wanted = taken.wanted;
+                failure = open_loop(stepper, discrete);
             }
         }
-        failure = open_loop(stepper, discrete);
         if failure.is_some() || observer(discrete).is_break() {
             break;
         }
@@ -311,6 +243,52 @@ fn record<E: Equations>(
     discrete.report = stepper.report();
     discrete.solver = stepper.solver();
     failure
+}
+
+impl StepControl<'_> {
+    /// Takes the next step of a motion; `None` at its end.
+    fn step<E: Equations>(
+        self,
+        stepper: &mut Steps<E>,
+        drive: &dyn Drive,
+        discrete: &mut DiscreteTrajectory,
+    ) -> Option<Result<Taken, StepError>> {
+        let Self {
+            duration, switches, ..
+        } = self;
+        let k = discrete.intervals();
+        let time = discrete.times[k];
+        let wanted = discrete.end.wanted.unwrap_or(self.first);
+        let tolerance = *discrete.end.tolerance.get_or_insert(self.tolerance);
+        if time >= duration * (1.0 - 1e-12) {
+            return None;
+        }
+        let mut later = switches.iter().filter(|&&at| at > time * (1.0 + 1e-12));
+        let end = later.next().copied().unwrap_or(duration).min(duration);
+        let left = end - time;
+        let mut earlier = switches.iter().filter(|&&at| at <= time * (1.0 + 1e-12));
+        let begin = earlier.next_back().copied().unwrap_or(0.0);
+        // The last two steps before an end share what is left, and there are two between any two ends.
+        let h = match left / wanted {
+            parts if parts <= 1.0 && time > begin => left,
+            parts if parts < 2.0 => 0.5 * left,
+            _ => wanted,
+        };
+        let to = if h == left { end } else { time + h };
+        // Behind a jump of voltages the change of the rates says more than the error: two steps may use a part of the tolerance.
+        let is_behind = k < 2 || discrete.times[k - 1] <= begin * (1.0 + 1e-12);
+        let at_jump = match is_behind {
+            true => AT_JUMPS * tolerance / (1 + switches.len()) as f64,
+            false => 0.0,
+        };
+        let allowed = [tolerance / duration, at_jump];
+        let taken = stepper.step_within([time, to], h, LEAST * duration, allowed, drive);
+        Some(taken.map(|[taken, next]| Taken {
+            step: [time, if taken == left { end } else { time + taken }],
+            multipliers: stepper.equations.now().multipliers.to_vec(),
+            wanted: Some(if taken == h { next.max(wanted) } else { next }),
+        }))
+    }
 }
 
 /// The failure of a motion whose last instant violates a closing constraint that was left out.
@@ -324,17 +302,6 @@ fn open_loop<E: Equations>(stepper: &Steps<E>, discrete: &DiscreteTrajectory) ->
     })
 }
 
-/// A step of controlled length.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct Controlled {
-    /// Its length in ms.
-    pub(super) taken: f64,
-    /// Length in ms that the next one may have.
-    pub(super) next: f64,
-    /// Multipliers at its start.
-    pub(super) multipliers: Vec<f64>,
-}
-
 /// Factor of a step whose local error, of third order, is `used` of the allowed error per time, with some room.
 fn factor(used: f64) -> f64 {
     (0.9 / used.sqrt()).max(0.1)
@@ -346,14 +313,14 @@ impl<E: Equations> Steps<E> {
     ///
     /// # Errors
     /// Steps down to `least` ms fail; the state is then that of the last accepted step.
-    pub(super) fn step_within(
+    fn step_within(
         &mut self,
         [from, to]: [f64; 2],
         h: f64,
         least: f64,
         allowed: [f64; 2],
         drive: &dyn Drive,
-    ) -> Result<Controlled, StepError> {
+    ) -> Result<[f64; 2], StepError> {
         self.allowed = Some(allowed);
         let mut part = h;
         loop {
@@ -387,10 +354,6 @@ impl<E: Equations> Steps<E> {
             close if (1.0..1.3).contains(&close) => part,
             other => part * other.min(2.0),
         };
-        Ok(Controlled {
-            taken: part,
-            next,
-            multipliers: self.equations.now().multipliers.to_vec(),
-        })
+        Ok([part, next])
     }
 }
