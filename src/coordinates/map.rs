@@ -283,6 +283,21 @@ impl CoordinateMap {
         }
     }
 
+    /// Adds Pᵀ f for the forces on some vectors times a factor, and takes them away.
+    pub fn take_back(
+        &self,
+        vectors: &[usize],
+        columns: &[f64],
+        forces: &mut [Vector],
+        factor: f64,
+        rows: &mut [f64],
+    ) {
+        for &vector in vectors {
+            let force = std::mem::take(&mut forces[vector]) * factor;
+            self.pull_back_one(vector, columns, &force, rows);
+        }
+    }
+
     /// Columns of articulated vectors, such as the derivatives of P along a direction, times rates of the coordinates.
     pub fn times(&self, columns: &[f64], rates: &[f64]) -> Vec<Vector> {
         let of_vector = |dependence: &Dependence| match dependence {

@@ -195,10 +195,8 @@ impl Course<'_> {
         vectors.dedup();
         for side in (0..2).filter(|&side| measure.reads(side)) {
             scratch.rows.fill(0.0);
-            for &vector in &vectors {
-                let force = std::mem::take(&mut part.forces[side][vector]);
-                map.pull_back_one(vector, &here[side].columns, &force, &mut scratch.rows);
-            }
+            let (forces, rows) = (&mut part.forces[side], &mut scratch.rows);
+            map.take_back(&vectors, &here[side].columns, forces, 1.0, rows);
             let by = &self.derivatives.instants[k + side];
             for (i, force) in scratch.rows[..by.nrows()].iter().enumerate() {
                 if *force != 0.0 {

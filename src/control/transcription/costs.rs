@@ -54,20 +54,12 @@ impl Transcription<'_> {
                 };
                 sum += by_horizon(&summand, by_h);
                 for side in (0..cost.site.sides()).filter(|&side| measure.reads(side)) {
-                    for &vector in &cost.vectors {
-                        let force = part.forces[side][vector] * factor;
-                        let rows = &mut self.workspace.rows[(k + side) * stride..][..coordinates];
-                        let columns = &self.workspace.instants[k + side].columns;
-                        map.pull_back_one(vector, columns, &force, rows);
-                    }
+                    let rows = &mut self.workspace.rows[(k + side) * stride..][..coordinates];
+                    let columns = &self.workspace.instants[k + side].columns;
+                    map.take_back(&cost.vectors, columns, &mut part.forces[side], factor, rows);
                 }
                 for &s in &cost.scalars {
                     self.workspace.rows[k * stride + coordinates + s] += part.rows[s] * factor;
-                }
-                for &vector in &cost.vectors {
-                    for side in &mut part.forces {
-                        side[vector] = Vector::zeros();
-                    }
                 }
                 part.rows.fill(0.0);
             }
@@ -208,10 +200,8 @@ impl Transcription<'_> {
         let sample = self.sample(Site::Instants, k);
         measure.gradient(&sample, forces, &mut []);
         let rows = &mut self.workspace.rows[first..first + map.unknowns()];
-        for &vector in &row.vectors {
-            let force = std::mem::replace(&mut forces[0][vector], Vector::zeros()) * factor;
-            map.pull_back_one(vector, &self.workspace.instants[k].columns, &force, rows);
-        }
+        let columns = &self.workspace.instants[k].columns;
+        map.take_back(&row.vectors, columns, &mut forces[0], factor, rows);
     }
 
     /// Adds σ times the second derivatives by the voltages, and by voltages and coordinates, to the values.

@@ -2,15 +2,14 @@
 
 use crate::control::transcription::Transcription;
 use crate::control::transcription::limit_rows::{
-    BEFORE, BEFORE_INSTANT, DURATION, LimitRow, SCALAR, Site, Step,
+    BEFORE, BEFORE_INSTANT, DURATION, LimitRow, SCALAR, Step,
 };
 use crate::functional::{Horizon, Measure, Sample, SumDerivatives};
-use crate::math::Vector;
 
-/// A part of a step in an interval: a measure times a factor.
-struct Part<'a> {
-    measure: &'a dyn Measure,
-    interval: usize,
+/// A part of a limit at an instant or in an interval: a measure times a factor.
+struct Part<'m> {
+    measure: &'m dyn Measure,
+    at: usize,
     factor: f64,
     /// Marks of the entries by coordinates of both instants, and by scalars.
     sides: [usize; 2],
@@ -54,68 +53,48 @@ impl<'m> Transcription<'m> {
         step.factor * (after - before)
     }
 
+    /// The measures whose gradients times their factors are that of a limit at instant or interval k.
+    fn parts(&self, limit: &LimitRow, k: usize) -> [Option<Part<'m>>; 2] {
+        let (factor, after, before) = match &limit.step {
+            None => (1.0, Some(k), None),
+            Some(step) => {
+                let before = step.interval_before(k).map(|at| (at, step.before));
+                (step.factor, step.interval(k), before)
+            }
+        };
+        let after = after.map(|at| Part {
+            measure: self.measure(limit),
+            at,
+            factor,
+            sides: [0, 1],
+            scalars: SCALAR,
+        });
+        let before = before.map(|(at, measure)| Part {
+            measure: limit.site.measure(self.model, measure),
+            at,
+            factor: -factor,
+            sides: [BEFORE_INSTANT, 0],
+            scalars: BEFORE,
+        });
+        [after, before]
+    }
+
     /// Gradients of the limits, behind the periodic values.
     pub(super) fn limit_gradients(&mut self) {
         let mut place = self.model.action.layout().values(self.layout.intervals);
         let count = self.model.action.map.unknowns();
         self.workspace.rows[..count].fill(0.0);
-        let mut part = std::mem::take(&mut self.workspace.measured);
+        let mut derivatives = std::mem::take(&mut self.workspace.measured);
         for row in 0..self.layout.limit_rows.len() {
             let (limit, k) = self.layout.limit_rows[row];
-            let is_step = self.layout.limits[limit].step.is_some();
-            match is_step {
-                true => self.step_gradient(limit, k, place, &mut part),
-                false => self.limit_gradient(limit, k, place, &mut part),
-            }
+            self.limit_gradient(limit, k, place, &mut derivatives);
             place += self.layout.limits[limit].entries.len();
         }
-        self.workspace.measured = part;
+        self.workspace.measured = derivatives;
     }
 
-    /// Gradient of a limit at instant or interval k from a place among the values on.
+    /// Gradient of a limit at instant or interval k from a place among the values on: the sum of those of its parts.
     fn limit_gradient(
-        &mut self,
-        limit: usize,
-        k: usize,
-        mut place: usize,
-        part: &mut SumDerivatives,
-    ) {
-        let map = &self.model.action.map;
-        let limit = &self.layout.limits[limit];
-        let measure = self.measure(limit);
-        let site = limit.site;
-        measure.gradient(&self.sample(site, k), &mut part.forces, &mut part.rows);
-        // Rows of the coordinates of one side at a time, in the storage of one instant's rows.
-        let mut at = 0;
-        for side in (0..site.sides()).filter(|&side| measure.reads(side)) {
-            for &vector in &limit.vectors {
-                map.pull_back_one(
-                    vector,
-                    &self.workspace.instants[k + side].columns,
-                    &part.forces[side][vector],
-                    &mut self.workspace.rows,
-                );
-            }
-            while let Some(&(_, i)) = limit.entries.get(at).filter(|(s, _)| *s == side) {
-                self.workspace.values[place] = std::mem::take(&mut self.workspace.rows[i]);
-                (at, place) = (at + 1, place + 1);
-            }
-        }
-        for &(mark, s) in &limit.entries[at..] {
-            self.workspace.values[place] = match mark {
-                DURATION => {
-                    let rate = limit.bounded.rate.unwrap_or(0.0);
-                    measure.by_duration(&self.sample(site, k)) - rate
-                }
-                _ => part.rows[s],
-            };
-            place += 1;
-        }
-        clear(part, &limit.vectors);
-    }
-
-    /// Gradient of a limit of a step before interval k from a place among the values on: the sum of those of its parts.
-    fn step_gradient(
         &mut self,
         limit: usize,
         k: usize,
@@ -124,64 +103,36 @@ impl<'m> Transcription<'m> {
     ) {
         let map = &self.model.action.map;
         let limit = &self.layout.limits[limit];
-        let Some(step) = &limit.step else {
-            return;
-        };
         let entries = || limit.entries.iter().enumerate();
         self.workspace.values[place..place + limit.entries.len()].fill(0.0);
-        let after = step.interval(k).map(|interval| Part {
-            measure: self.measure(limit),
-            interval,
-            factor: step.factor,
-            sides: [0, 1],
-            scalars: SCALAR,
-        });
-        let before = step.interval_before(k).map(|interval| Part {
-            measure: limit.site.measure(self.model, step.before),
-            interval,
-            factor: -step.factor,
-            sides: [BEFORE_INSTANT, 0],
-            scalars: BEFORE,
-        });
         let mut by_duration = 0.0;
-        for part in [after, before].into_iter().flatten() {
-            let sample = self.sample(Site::Intervals, part.interval);
-            if part.measure.reads_rates() && self.layout.horizon == Horizon::Free {
-                by_duration += part.factor * part.measure.by_duration(&sample);
+        for part in self.parts(limit, k).into_iter().flatten() {
+            let (measure, factor) = (part.measure, part.factor);
+            let sample = self.sample(limit.site, part.at);
+            if measure.reads_rates() && self.layout.horizon == Horizon::Free {
+                by_duration += factor * measure.by_duration(&sample);
             }
-            part.measure
-                .gradient(&sample, &mut derivatives.forces, &mut derivatives.rows);
-            for side in (0..2).filter(|&side| part.measure.reads(side)) {
-                for &vector in &limit.vectors {
-                    let force = derivatives.forces[side][vector] * part.factor;
-                    let columns = &self.workspace.instants[part.interval + side].columns;
-                    map.pull_back_one(vector, columns, &force, &mut self.workspace.rows);
-                }
+            let SumDerivatives { forces, rows, .. } = &mut *derivatives;
+            measure.gradient(&sample, forces, rows);
+            // Rows of the coordinates of one side at a time, in the storage of one instant's rows.
+            for side in (0..limit.site.sides()).filter(|&side| measure.reads(side)) {
+                let columns = &self.workspace.instants[part.at + side].columns;
+                let (forces, sums) = (&mut forces[side], &mut self.workspace.rows);
+                map.take_back(&limit.vectors, columns, forces, factor, sums);
                 for (at, &(_, i)) in entries().filter(|(_, (mark, _))| *mark == part.sides[side]) {
-                    let row = std::mem::take(&mut self.workspace.rows[i]);
-                    self.workspace.values[place + at] += row;
+                    self.workspace.values[place + at] += std::mem::take(&mut sums[i]);
                 }
             }
             for (at, &(_, s)) in entries().filter(|(_, (mark, _))| *mark == part.scalars) {
-                self.workspace.values[place + at] += part.factor * derivatives.rows[s];
+                self.workspace.values[place + at] += factor * rows[s];
             }
-            clear(derivatives, &limit.vectors);
+            rows.fill(0.0);
         }
         let rate = limit.bounded.rate.unwrap_or(0.0) * limit.part(k);
         for (at, _) in entries().filter(|(_, (mark, _))| *mark == DURATION) {
             self.workspace.values[place + at] = by_duration - rate;
         }
     }
-}
-
-/// Sets what a gradient has been added to back to zero.
-fn clear(part: &mut SumDerivatives, vectors: &[usize]) {
-    for &vector in vectors {
-        for side in &mut part.forces {
-            side[vector] = Vector::zeros();
-        }
-    }
-    part.rows.fill(0.0);
 }
 
 impl Transcription<'_> {
