@@ -71,9 +71,7 @@ impl<'a> Problem<'a> {
             })
             .collect();
         let mut system = with_parameters(system, &parameters, constants);
-        let drive = Drive::new(system.sources().len(), &parameters, constants);
-        let start = drive.start(&recording.start);
-        let inputs = Inputs::new(drive, &recording.voltages, &mut system, &start);
+        let (inputs, start) = Inputs::new(recording, &parameters, &mut system);
         let voltages = &inputs.undelayed;
         let control = Control {
             parameters,
@@ -302,80 +300,18 @@ struct Sought {
     value: f64,
 }
 
-/// Gains and delays at values of the constants, by source.
-#[derive(Clone, Debug)]
-pub(super) struct Drive {
-    gains: Vec<Option<Sought>>,
-    delays: Vec<Option<Sought>>,
-}
-
 /// An input in an interval, and its derivative by its delay.
 struct Delayed {
     value: f64,
     slope: f64,
 }
 
-impl Drive {
-    pub(super) fn new(sources: usize, parameters: &[Parameter], constants: &[f64]) -> Self {
-        let mut out = Self {
-            gains: vec![None; sources],
-            delays: vec![None; sources],
-        };
-        for (constant, (parameter, &value)) in parameters.iter().zip(constants).enumerate() {
-            let sought = Some(Sought { constant, value });
-            for follower in &parameter.constants {
-                match follower.constant {
-                    Constant::Gain(source) => out.gains[source] = sought,
-                    Constant::Delay(source) => out.delays[source] = sought,
-                    _ => {}
-                }
-            }
-        }
-        out
-    }
-
-    /// Sources of which a gain or a delay is sought.
-    pub(super) fn sources(&self) -> impl Iterator<Item = usize> + '_ {
-        let is_sought = |source: &usize| {
-            let of = |list: &[Option<Sought>]| list[*source].is_some();
-            of(&self.gains) || of(&self.delays)
-        };
-        (0..self.gains.len()).filter(is_sought)
-    }
-
-    fn has_delays(&self) -> bool {
-        self.delays.iter().any(Option::is_some)
-    }
-
-    fn factor(&self, source: usize) -> f64 {
-        self.gains[source].map_or(1.0, |gain| gain.value)
-    }
-
-    /// Voltages and loads of a recording with their gains.
-    fn voltages<'a>(&self, said: &'a Voltages) -> Cow<'a, Voltages> {
-        match self.gains.iter().all(Option::is_none) {
-            true => Cow::Borrowed(said),
-            false => Cow::Owned(said.scaled(|source| self.factor(source))),
-        }
-    }
-
-    /// The start with gains of the voltages under which it rests.
-    pub(super) fn start<'a>(&self, said: &'a BoundaryState) -> Cow<'a, BoundaryState> {
-        match said {
-            BoundaryState::RestAtVoltages(row, rest) if self.gains.iter().any(Option::is_some) => {
-                let row = row.iter().enumerate();
-                let row = row.map(|(s, value)| self.factor(s) * value).collect();
-                Cow::Owned(BoundaryState::RestAtVoltages(row, *rest))
-            }
-            _ => Cow::Borrowed(said),
-        }
-    }
-}
-
-/// The inputs of a motion with their gains and delays.
+/// The inputs of a motion with their gains and delays at values of the constants.
 #[derive(Clone, Debug)]
 pub(super) struct Inputs<'a> {
-    drive: Drive,
+    /// By source.
+    gains: Vec<Option<Sought>>,
+    delays: Vec<Option<Sought>>,
     /// Those that are said, with gains.
     pub(super) undelayed: Cow<'a, Voltages>,
     /// Inputs before those that are said.
@@ -385,15 +321,38 @@ pub(super) struct Inputs<'a> {
 }
 
 impl<'a> Inputs<'a> {
-    /// Those that a recording says of a system; `start` has gains.
+    /// Those that a recording says of a system with parameters at their guesses, and its start under them.
     pub(super) fn new(
-        drive: Drive,
-        said: &'a Voltages,
+        recording: &'a Recording,
+        parameters: &[Parameter],
         system: &mut System,
-        start: &BoundaryState,
-    ) -> Self {
-        let undelayed = drive.voltages(said);
-        let before = match start {
+    ) -> (Self, Cow<'a, BoundaryState>) {
+        let none = vec![None; system.sources().len()];
+        let [mut gains, mut delays] = [none.clone(), none];
+        for (constant, parameter) in parameters.iter().enumerate() {
+            let value = parameter.guess;
+            let sought = Some(Sought { constant, value });
+            for follower in &parameter.constants {
+                match follower.constant {
+                    Constant::Gain(source) => gains[source] = sought,
+                    Constant::Delay(source) => delays[source] = sought,
+                    _ => {}
+                }
+            }
+        }
+        let factor = |source: usize| gains[source].map_or(1.0, |gain| gain.value);
+        let (mut undelayed, mut start) = (
+            Cow::Borrowed(&recording.voltages),
+            Cow::Borrowed(&recording.start),
+        );
+        if gains.iter().any(Option::is_some) {
+            undelayed = Cow::Owned(recording.voltages.scaled(factor));
+            if let BoundaryState::RestAtVoltages(row, _) = start.to_mut() {
+                let row = row.iter_mut().enumerate();
+                row.for_each(|(source, value)| *value *= factor(source));
+            }
+        }
+        let before = match &*start {
             BoundaryState::RestAtVoltages(row, _) => row.clone(),
             _ => undelayed.at(0.0).to_vec(),
         };
@@ -402,28 +361,28 @@ impl<'a> Inputs<'a> {
             let resistor = Constant::Resistance(source).value(system);
             source < loads && resistor.is_none()
         };
-        Self {
+        let inputs = Self {
             by_squares: (0..before.len()).map(is_square).collect(),
             before,
             undelayed,
-            drive,
-        }
+            gains,
+            delays,
+        };
+        (inputs, start)
     }
 
     /// Sources of which a gain or a delay is sought.
     pub(super) fn sought(&self) -> impl Iterator<Item = usize> + '_ {
-        self.drive.sources()
+        let both = self.gains.iter().zip(&self.delays).enumerate();
+        both.filter_map(|(source, (gain, delay))| gain.or(*delay).map(|_| source))
     }
 
     /// Inputs in the interval between two times in ms: at its middle, unless they are delayed.
     pub(super) fn within(&self, from: f64, to: f64) -> Cow<'_, [f64]> {
         let mut out = self.undelayed.at(0.5 * (from + to));
-        if self.drive.has_delays() {
-            let row = out.to_mut();
-            for (source, value) in row.iter_mut().enumerate() {
-                if let Some(delay) = self.drive.delays[source] {
-                    *value = self.delayed(source, delay.value, [from, to]).value;
-                }
+        for (source, delay) in self.delays.iter().enumerate() {
+            if let Some(delay) = delay {
+                out.to_mut()[source] = self.delayed(source, delay.value, [from, to]).value;
             }
         }
         out
@@ -437,8 +396,7 @@ impl<'a> Inputs<'a> {
         value: f64,
         interval: Option<[f64; 2]>,
     ) -> Option<Vec<(usize, f64)>> {
-        let Drive { gains, delays } = &self.drive;
-        let (gain, delay) = (gains[source], delays[source]);
+        let (gain, delay) = (self.gains[source], self.delays[source]);
         let by_delay = delay.zip(interval).map(|(delay, times)| {
             let slope = self.delayed(source, delay.value, times).slope;
             (delay.constant, slope)
@@ -451,7 +409,7 @@ impl<'a> Inputs<'a> {
     /// Times in ms at which inputs have corners or jumps.
     pub(super) fn corners(&self) -> Vec<f64> {
         let said = self.undelayed.switches();
-        let delays = self.drive.delays.iter();
+        let delays = self.delays.iter();
         let delays = in_order(delays.map(|one| one.map_or(0.0, |one| one.value)));
         let later = |&delay: &f64| {
             let begins = (delay > 0.0).then_some(delay);
