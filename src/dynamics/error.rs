@@ -1,6 +1,6 @@
 //! Errors of steps and of equilibria.
 
-use crate::dynamics::equilibrium::{Equilibrium, Instability, Load};
+use crate::dynamics::equilibrium::{Equilibrium, Instability, Load, StabilityLoss};
 use crate::dynamics::singular_configurations::{BeyondLaw, NOTHING};
 use crate::nlp::Status;
 use crate::stop::Stopped;
@@ -156,15 +156,11 @@ pub enum EquilibriumError {
     /// The path of equilibria under growing loads ends, and no other equilibrium was found.
     #[error(
         "no equilibrium was found under these voltages: the path of equilibria under growing {} ends at {:.6} % of them ({}{})",
-        grown(*load), 100.0 * fraction, why(*kind), moved(last)
+        grown(loss.load), 100.0 * loss.fraction, why(loss.kind), moved(last)
     )]
     LimitPoint {
-        /// Largest fraction of the load for which there was an equilibrium.
-        fraction: f64,
-        /// Instability by which it is lost, where that was found.
-        kind: Option<Instability>,
-        /// The load that grew.
-        load: Load,
+        /// The load that grew, its largest fraction for which there was an equilibrium, and the instability, where that was found.
+        loss: StabilityLoss,
         /// The state there.
         last: Box<Equilibrium>,
     },

@@ -151,8 +151,8 @@ impl Run<'_> {
         let zero = model.reference_coordinates();
         let found = stable_equilibrium(&model, &zero, &model.scalars(&task.voltages));
         let found = found.map_err(|error| match &error {
-            EquilibriumError::LimitPoint { kind, .. } => {
-                let status = kind.map_or("limit_point", |kind| kind.key());
+            EquilibriumError::LimitPoint { loss, .. } => {
+                let status = loss.kind.map_or("limit_point", |kind| kind.key());
                 (status, error.to_string())
             }
             _ => ("no_equilibrium", error.to_string()),

@@ -118,19 +118,7 @@ fn find(
     let start = model.reference_coordinates();
     match stable_equilibrium(model, &start, &model.scalars(voltages)) {
         Ok(found) => Ok((found, None)),
-        Err(dynamics::EquilibriumError::LimitPoint {
-            fraction,
-            kind,
-            load,
-            last,
-        }) => {
-            let loss = StabilityLoss {
-                load,
-                fraction,
-                kind,
-            };
-            Ok((*last, Some(loss)))
-        }
+        Err(dynamics::EquilibriumError::LimitPoint { loss, last }) => Ok((*last, Some(loss))),
         Err(error) => Err(error),
     }
 }

@@ -136,9 +136,10 @@ fn a_muscle_pulls_in_at_the_greatest_voltage_of_its_law() {
             let model = at_rest(&system(law), coordinates);
             let refused =
                 stable_equilibrium(&model, &model.coordinates_at(&[0.0]), &[1.1 * greatest]);
-            let Err(EquilibriumError::LimitPoint { fraction, .. }) = refused else {
+            let Err(EquilibriumError::LimitPoint { loss, .. }) = refused else {
                 panic!("{law:?}: {refused:?}");
             };
+            let fraction = loss.fraction;
             assert!((1.1 * fraction - 1.0).abs() < 1e-5, "{law:?}: {fraction}");
         }
     }

@@ -64,12 +64,9 @@ fn outcome(found: Result<Equilibrium, EquilibriumError>) -> (Equilibrium, String
             let route = word(&found.route);
             (found, route, fraction)
         }
-        Err(EquilibriumError::LimitPoint {
-            fraction,
-            kind,
-            last,
-            ..
-        }) => (*last, format!("{kind:?}"), fraction),
+        Err(EquilibriumError::LimitPoint { loss, last }) => {
+            (*last, format!("{:?}", loss.kind), loss.fraction)
+        }
         Err(other) => panic!("{other}"),
     }
 }

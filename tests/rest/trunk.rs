@@ -179,9 +179,10 @@ fn pull_in_is_refused_where_the_path_ends() {
             );
             for beyond in [1.001, 1.1, 2.0] {
                 let refused = stretch(&system, coordinates, critical * beyond * unit);
-                let Err(EquilibriumError::LimitPoint { fraction, .. }) = refused else {
+                let Err(EquilibriumError::LimitPoint { loss, .. }) = refused else {
                     panic!("{coordinates:?}: {refused:?} at {beyond} times the critical voltage");
                 };
+                let fraction = loss.fraction;
                 // Increments of V² end at 1e-6 of the load.
                 println!("{coordinates:?} {beyond}: {:e}", fraction * beyond - 1.0);
                 assert!(

@@ -157,11 +157,11 @@ fn a_membrane_on_a_frame_pulls_in_at_the_voltage_of_its_closed_form() {
         let model = Model::new(system, None, 1.0, &[]).unwrap();
         let asked = 2.0 * expected;
         let refused = equilibrium(&model, &model.coordinates_at(&[]), &[asked]).unwrap_err();
-        let EquilibriumError::LimitPoint { fraction, kind, .. } = refused else {
+        let EquilibriumError::LimitPoint { loss, .. } = refused else {
             panic!("{refused}");
         };
-        assert_eq!(kind, Some(Instability::PullIn));
-        let found = fraction * asked;
+        assert_eq!(loss.kind, Some(Instability::PullIn));
+        let found = loss.fraction * asked;
         assert!(
             (found / expected - 1.0).abs() < 1e-7,
             "{p}: {found} {expected}"

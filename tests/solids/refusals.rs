@@ -150,17 +150,11 @@ fn the_stack_pulls_in() {
     let refused = equilibrium(&model, &model.coordinates_at(&[]), &[asked]).unwrap_err();
     println!("{refused}");
     assert!(refused.to_string().contains("pull-in: a limit point"));
-    let EquilibriumError::LimitPoint {
-        fraction,
-        kind,
-        last,
-        ..
-    } = refused
-    else {
+    let EquilibriumError::LimitPoint { loss, last } = refused else {
         panic!("{refused}");
     };
-    assert_eq!(kind, Some(Instability::PullIn));
-    let critical = fraction * asked;
+    assert_eq!(loss.kind, Some(Instability::PullIn));
+    let critical = loss.fraction * asked;
     assert_eq!(last.scalars[0], critical);
     // A free homogeneous block of relative permittivity 3 pulls in at 1.08149 √(μ/ε_r ε₀), a clamped one later.
     let homogeneous = 10.0 * 1.081_487_9 * (0.1 / (3.0 * VACUUM_PERMITTIVITY)).sqrt();

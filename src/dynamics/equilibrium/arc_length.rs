@@ -101,19 +101,12 @@ impl Ramp<'_> {
     }
 }
 
-/// State at which an equilibrium is lost.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) struct LimitPoint {
-    pub(super) fraction: f64,
-    pub(super) kind: Instability,
-    pub(super) state: RestState,
-}
-
 /// End of a path of stable states.
 pub(super) enum PathEnd {
     /// All of the load acts.
     Reached(RestState),
-    Lost(LimitPoint),
+    /// The point at which it is lost.
+    Lost(PathPoint, Instability),
 }
 
 /// A point of the path.
@@ -322,11 +315,7 @@ pub(super) fn path_end(
         let is_before = |fraction: f64| fraction < 1.0 || here.fraction >= 1.0;
         match lost {
             Some((found, kind)) if is_before(found.fraction) => {
-                return Some(PathEnd::Lost(LimitPoint {
-                    fraction: found.fraction,
-                    kind,
-                    state: found.state,
-                }));
+                return Some(PathEnd::Lost(found, kind));
             }
             Some(_) => return path.full(&here).map(PathEnd::Reached),
             None if next.fraction >= 1.0 => {

@@ -1,9 +1,7 @@
 //! Static equilibrium on the path of growing loads: the weights first, then the voltages in steps of V², cut when Newton
 //! fails.
 
-use crate::dynamics::equilibrium::arc_length::{
-    KINK, LimitPoint, PathEnd, Ramp, STRAIGHT, path_end,
-};
+use crate::dynamics::equilibrium::arc_length::{KINK, PathEnd, Ramp, STRAIGHT, path_end};
 use crate::dynamics::equilibrium::rest_state::{
     Equilibrium, Load, RestState, Route, StabilityLoss,
 };
@@ -229,11 +227,7 @@ pub(super) fn at_limit(
 ) -> EquilibriumError {
     let end = path_end(statics, state, ramp, fraction);
     let (fraction, kind, last) = match end {
-        Some(PathEnd::Lost(LimitPoint {
-            fraction,
-            kind,
-            state,
-        })) => (fraction, Some(kind), state),
+        Some(PathEnd::Lost(at, kind)) => (at.fraction, Some(kind), at.state),
         Some(PathEnd::Reached(_)) | None => (fraction, None, state.clone()),
     };
     let loss = StabilityLoss {
@@ -242,15 +236,9 @@ pub(super) fn at_limit(
         kind,
     };
     let voltages = ramp.apply(statics, fraction);
+    let last = Equilibrium::new(statics, &last, &voltages, Route::Beyond(loss));
     EquilibriumError::LimitPoint {
-        fraction,
-        kind,
-        load: ramp.load,
-        last: Box::new(Equilibrium::new(
-            statics,
-            &last,
-            &voltages,
-            Route::Beyond(loss),
-        )),
+        loss,
+        last: Box::new(last),
     }
 }

@@ -15,7 +15,7 @@
 //! Equilibria along the path of growing voltages, past limit points.
 
 use crate::dynamics::equilibrium::arc_length::{
-    FIRST, LARGEST, LimitPoint, PathEnd, PathPoint, Ramp, SMALLEST, crossings, path, path_end,
+    FIRST, LARGEST, PathEnd, PathPoint, Ramp, SMALLEST, crossings, path, path_end,
 };
 use crate::dynamics::equilibrium::growth::{Grown, at_limit, begin, grow, unloaded};
 use crate::dynamics::equilibrium::relaxation::relax;
@@ -90,19 +90,11 @@ fn found(
     let is_driven = statics.is_driven(voltages);
     let weighed = under_weight(&mut statics, start, &none, !is_driven);
     match (weighed, is_driven) {
-        (Err(error @ EquilibriumError::LimitPoint { .. }), true) => {
+        (Err(EquilibriumError::LimitPoint { loss, last }), true) => {
             // Under voltages there may be an equilibrium where there is none without.
-            let EquilibriumError::LimitPoint { last, load, .. } = &error else {
-                unreachable!("matched above");
-            };
-            let loss = StabilityLoss {
-                load: *load,
-                fraction: last.loss().map_or(0.0, |l| l.fraction),
-                kind: last.loss().and_then(|l| l.kind),
-            };
             let state = statics.state_without_field(&last.z);
             let found = come_to_rest(&mut statics, &[state], voltages)?;
-            let found = found.ok_or(error)?;
+            let found = found.ok_or(EquilibriumError::LimitPoint { loss, last })?;
             let route = Route::DampedMotion(loss);
             Ok(Equilibrium::new(&mut statics, &found, voltages, route))
         }
@@ -237,13 +229,13 @@ fn under(
             }
             None
         }
-        Some(PathEnd::Lost(limit)) => Some(limit),
+        Some(PathEnd::Lost(point, kind)) => Some((point, kind)),
         None => None,
     };
     let loss = StabilityLoss {
         load: ramp.load,
-        fraction: limit.as_ref().map_or(at, |l| l.fraction),
-        kind: limit.as_ref().map(|l| l.kind),
+        fraction: limit.as_ref().map_or(at, |(point, _)| point.fraction),
+        kind: limit.as_ref().map(|(_, kind)| *kind),
     };
     let steps = STEPS[usize::from(!statics.model.action.map.of_nodes.is_empty())];
     let (from, directions) = match is_reached {
@@ -264,7 +256,7 @@ fn under(
             met.push(found);
         }
     }
-    met.extend(limit.map(|LimitPoint { state, .. }| state));
+    met.extend(limit.map(|(point, _)| point.state));
     met.extend([before, rest]);
     ramp.apply(statics, 1.0);
     if let Some(found) = come_to_rest(statics, &met, &voltages)? {
