@@ -7,7 +7,7 @@
 //! ```
 
 use crate::energy::Coefficient;
-use crate::math::{Fault, Jet, Number, rule, value};
+use crate::math::{Fault, Jet, Key, Number, refuse};
 use nalgebra::{SVector, Vector1};
 use std::f64::consts::PI;
 use std::fmt::Debug;
@@ -146,27 +146,30 @@ impl ElasticLaw {
     /// The first one without a meaning.
     pub fn check(&self) -> Result<(), Fault> {
         let part = |share: f64| {
-            let expected = "a part of the shear modulus from 0 to 1";
-            value((0.0..=1.0).contains(&share), "share", share, expected)
+            refuse!(unless (0.0..=1.0).contains(&share), Key("share");
+                value share, expected "a part of the shear modulus from 0 to 1");
+            Ok(())
         };
         let checked = match *self {
             Self::Gent { limit } => {
-                let holds = limit > 0.0 && limit.is_finite();
-                value(holds, "limit", limit, "a positive number, Jm of Gent's law")
+                refuse!(unless limit > 0.0 && limit.is_finite(), Key("limit");
+                    value limit, expected "a positive number, Jm of Gent's law");
+                Ok(())
             }
             Self::MooneyRivlin { share } => part(share),
             Self::Yeoh { c2, c3 } => {
-                let expected = "a finite stress, and an energy that grows without bound: c3 > 0, or c3 = 0 and c2 >= 0";
                 let grows = c3 > 0.0 || (c3 == 0.0 && c2 >= 0.0);
                 let holds = grows && c2.is_finite() && c3.is_finite();
-                let found = format!("{c3} MPa with c2 = {c2} MPa");
-                rule(holds, "c3", found, expected)
+                refuse!(unless holds, Key("c3");
+                    found format!("{c3} MPa with c2 = {c2} MPa"),
+                    expected "a finite stress, and an energy that grows without bound: c3 > 0, or c3 = 0 and c2 >= 0");
+                Ok(())
             }
             Self::Ogden { exponents, share } => {
                 let holds = exponents.iter().all(|a| *a != 0.0 && a.is_finite());
-                let found = format!("{exponents:?}");
-                let expected = "two numbers that are not zero";
-                rule(holds, "exponents", found, expected).and_then(|()| part(share))
+                refuse!(unless holds, Key("exponents");
+                    found format!("{exponents:?}"), expected "two numbers that are not zero");
+                part(share)
             }
         };
         checked.map_err(|fault| fault.under(self.name()))

@@ -8,11 +8,11 @@ use crate::control::problem::{
 use crate::control::{Earlier, EarlierSolution, Motions, problem};
 use crate::interface::builder::builder;
 use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
-use crate::interface::error::{Result, require, source};
+use crate::interface::error::{Entry, Result, source};
 use crate::interface::handle::{Handle, Input};
 use crate::interface::motion::Optimum;
 use crate::interface::state::State;
-use crate::math::{Signal, shortest};
+use crate::math::{Signal, refuse, shortest};
 use crate::model::components::Load;
 use crate::model::system::Source;
 use crate::model::{Parameter, System};
@@ -114,22 +114,23 @@ impl Control {
             Duration::Free { min, max, guess } => (guess, [min, max]),
         };
         let holds = positive(first) && bounds.map(positive) == [true; 2] && bounds[0] <= bounds[1];
-        require!(holds, "control";
-            found("a duration within {bounds:?} ms"), expected "positive numbers that grow");
-        require!(self.task.intervals > 0, "control"; found("no interval"), expected "one or more");
+        refuse!(unless holds, Entry("control");
+            found format!("a duration within {bounds:?} ms"), expected "positive numbers that grow");
+        refuse!(if self.task.intervals == 0, Entry("control");
+            found "no interval", expected "one or more");
         let [lower, upper] = self.task.voltage_bounds;
-        require!(lower < upper, "control";
-            found("voltages within {:?} V", self.task.voltage_bounds), expected "bounds that grow");
+        refuse!(unless lower < upper, Entry("control");
+            found format!("voltages within {:?} V", self.task.voltage_bounds), expected "bounds that grow");
         let sources = system.sources();
-        require!(sources.iter().any(Source::acts), "control";
-            found("a system without a muscle that takes a voltage, or a load"),
+        refuse!(unless sources.iter().any(Source::acts), Entry("control");
+            found "a system without a muscle that takes a voltage, or a load",
             expected "a muscle with a permittivity, or a load");
         let load_bounds = self.load_bounds(system)?;
         let given = self.given(system, &load_bounds)?;
         let is_open = |s: usize| sources[s].acts() && !given.contains_key(&s);
         let open = !self.task.parameters.is_empty() || (0..sources.len()).any(is_open);
-        require!(open, "control";
-            found("all voltages and loads"),
+        refuse!(unless open, Entry("control");
+            found "all voltages and loads",
             expected "a voltage or load to look for, or a free parameter");
         let weights = &self.task.objective;
         let weights = [
@@ -142,8 +143,8 @@ impl Control {
         let energies = &self.task.objective.energies;
         let is_any = !costs.is_empty() || !energies.is_empty() || weights != [0.0; 4];
         let holds = weights.iter().all(|w| *w >= 0.0 && w.is_finite()) && is_any;
-        require!(holds, "control";
-            found("weights {weights:?} of effort, rate, time and peak"),
+        refuse!(unless holds, Entry("control");
+            found format!("weights {weights:?} of effort, rate, time and peak"),
             expected "weights of which one is positive");
         let is_periodic = self.goal == State::Periodic;
         check_costs(costs, is_periodic, system)?;
@@ -163,8 +164,8 @@ impl Control {
     /// Bounds of the loads that are sought, by source.
     fn load_bounds(&self, system: &System) -> Result<BTreeMap<usize, [f64; 2]>> {
         let bounds = |&(load, bounds): &(Handle<Load>, [f64; 2])| {
-            require!(bounds[0] < bounds[1], "control";
-                found("loads within {bounds:?}"), expected "bounds that grow");
+            refuse!(unless bounds[0] < bounds[1], Entry("control");
+                found format!("loads within {bounds:?}"), expected "bounds that grow");
             Ok((source(&load.into(), system)?, bounds))
         };
         self.load_bounds.iter().map(bounds).collect()
@@ -179,16 +180,16 @@ impl Control {
         let mut functions = self.voltages.iter().map(|(_, function)| function);
         let jump = functions.find_map(|function| self.task.duration.jump(function));
         let time = shortest(jump.unwrap_or_default(), 6);
-        require!(jump.is_none(), "control";
-            found("a voltage or load that jumps at {time} ms where the duration is free"),
+        refuse!(if jump.is_some(), Entry("control");
+            found format!("a voltage or load that jumps at {time} ms where the duration is free"),
             expected "functions of time without jumps, or a given duration");
         let place =
             |(input, signal): &(Input, Signal)| Ok((source(input, system)?, signal.clone()));
         let mut given: BTreeMap<usize, Signal> =
             self.voltages.iter().map(place).collect::<Result<_>>()?;
         let both = given.keys().any(|source| sought.contains_key(source));
-        require!(!both, "control";
-            found("a load that is given and sought"), expected "one of both");
+        refuse!(if both, Entry("control");
+            found "a load that is given and sought", expected "one of both");
         let is_named = |s: usize| sought.contains_key(&s) || given.contains_key(&s);
         let absent: Vec<_> = problem::absent_loads(system, is_named).collect();
         given.extend(absent);
@@ -244,9 +245,10 @@ impl Control {
     /// # Errors
     /// As of [`solve`](Self::solve); no optimum was found, nothing holds the goal, or the problem has something that is not offered.
     pub fn horizon(&self, system: &System, intervals: usize) -> Result<Horizon> {
-        require!(intervals > 0, "horizon"; found("{intervals} intervals"), expected "1 or more");
-        require!(intervals <= Ahead::MOST_INTERVALS, "horizon";
-            found("{intervals} intervals"), expected "no more than 10000");
+        refuse!(if intervals == 0, Entry("horizon");
+            found format!("{intervals} intervals"), expected "1 or more");
+        refuse!(if intervals > Ahead::MOST_INTERVALS, Entry("horizon");
+            found format!("{intervals} intervals"), expected "no more than 10000");
         let system = system.checked()?;
         let ahead = Ahead {
             control: self.resolve(&system)?,
@@ -296,7 +298,7 @@ impl<'a> Together<'a> {
     /// As of [`Control::solve`], or something cannot be the same in all motions. A problem without a solution is no error: see
     /// [`Optimum::is_solved`] of each.
     pub fn solve(&self) -> Result<Vec<Optimum>> {
-        require!(!self.motions.is_empty(), "motions"; found("none"), expected "one or more");
+        refuse!(if self.motions.is_empty(), Entry("motions"); found "none", expected "one or more");
         let mut list = Vec::new();
         for (number, (system, control)) in self.motions.iter().enumerate() {
             let system = system.checked()?;
@@ -309,8 +311,8 @@ impl<'a> Together<'a> {
         let sources = list[0].system.sources();
         let name = |input: &Input| {
             let found = input.source(&list[0].system);
-            require!(found.is_some(), "shared inputs";
-                found("{input:?}"), expected "a muscle, driven electrode or load of all systems");
+            refuse!(if found.is_none(), Entry("shared inputs");
+                found format!("{input:?}"), expected "a muscle, driven electrode or load of all systems");
             Ok(sources[found.unwrap_or_default()].name.clone())
         };
         let shared_inputs = self.shared.iter().map(name).collect::<Result<_>>()?;

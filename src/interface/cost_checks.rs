@@ -1,7 +1,8 @@
 //! Checks of the costs, limits and waypoints of a control problem against its system.
 
 use crate::control::problem::{CostFunction, During, EnergyCost, Limit, QuantityCost, Waypoint};
-use crate::interface::error::{Result, require};
+use crate::interface::error::{Entry, Result};
+use crate::math::refuse;
 use crate::model::system::{Joint, Muscle};
 use crate::model::{System, What};
 
@@ -30,8 +31,8 @@ pub(super) fn check_costs(
             During::Motion | During::End => true,
         };
         let is_sound = cost.weight > 0.0 && cost.weight.is_finite() && is_followed && is_timed;
-        require!(exists && is_sound, "cost";
-            found("{cost:?}"),
+        refuse!(unless exists && is_sound, Entry("cost");
+            found format!("{cost:?}"),
             expected "a positive weight of a marker, of a joint with one coordinate, or of a quantity of a lumped muscle (of its source behind a resistor), along finite values or at a part of the duration above 0 and below 1");
     }
     Ok(())
@@ -41,8 +42,8 @@ pub(super) fn check_costs(
 pub(super) fn check_energies(costs: &[EnergyCost], system: &System) -> Result<()> {
     for cost in costs {
         let is_sound = cost.weight > 0.0 && cost.weight.is_finite();
-        require!(cost.exists(system) && is_sound, "cost";
-            found("{cost:?}"), expected "a positive weight of a lumped muscle with a permittivity");
+        refuse!(unless cost.exists(system) && is_sound, Entry("cost");
+            found format!("{cost:?}"), expected "a positive weight of a lumped muscle with a permittivity");
     }
     Ok(())
 }
@@ -53,8 +54,8 @@ pub(super) fn check_limits(limits: &[Limit], system: &System) -> Result<()> {
         let is_then = limit.part.is_none_or(|part| part > 0.0 && part <= 1.0);
         let has_field = !matches!(limit.what, What::Field(_)) || limit.max > 0.0;
         let leaves = limit.min <= limit.max && has_field;
-        require!(limit.what.exists(system) && leaves && is_then, "limit";
-            found("{limit:?}"), expected "a range of a part of the system");
+        refuse!(unless limit.what.exists(system) && leaves && is_then, Entry("limit");
+            found format!("{limit:?}"), expected "a range of a part of the system");
     }
     Ok(())
 }
@@ -75,8 +76,8 @@ pub(super) fn check_waypoints(
             && waypoint.places.keys().all(|&m| m < system.markers.len())
             && given.all(|(_, value)| value.is_finite())
             && waypoint.angles.iter().all(of_joint);
-        require!(holds, "waypoint";
-            found("{waypoint:?}"),
+        refuse!(unless holds, Entry("waypoint");
+            found format!("{waypoint:?}"),
             expected "a finite place of a marker or joint at a part of the duration above 0 and below 1");
     }
     Ok(())

@@ -7,9 +7,9 @@ use crate::control::problem::{
 };
 use crate::interface::builder::builder;
 use crate::interface::control::Control;
-use crate::interface::error::{Result, require};
+use crate::interface::error::{Entry, Result};
 use crate::interface::handle::Handle;
-use crate::math::{Signal, Vector};
+use crate::math::{Signal, Vector, refuse};
 use crate::model::system::{Joint, Marker, Muscle};
 use crate::model::{FieldPlace, Pulling, Quantity, Reaction, System, What};
 use nalgebra::Vector3;
@@ -36,8 +36,8 @@ impl Control {
     ) -> Result<problem::Control> {
         let weight = self.peak_voltage;
         let is_sought = weight == 0.0 || control.minimise_peak_voltage(weight, system);
-        require!(is_sought, "control";
-            found("a cost of the peak voltage where all voltages are given"),
+        refuse!(unless is_sought, Entry("control");
+            found "a cost of the peak voltage where all voltages are given",
             expected "a voltage that is sought");
         Ok(control)
     }

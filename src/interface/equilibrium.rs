@@ -3,9 +3,10 @@
 use crate::control::problem::AtRest;
 use crate::dynamics::EnergyExchange;
 use crate::interface::builder::builder;
-use crate::interface::error::{Error, Result, require, source};
+use crate::interface::error::{Entry, Error, Result, source};
 use crate::interface::handle::{Handle, Input};
 use crate::interface::motion::Motion;
+use crate::math::refuse;
 use crate::model::components::Load;
 use crate::model::{NO_BRANCHES, Response, System};
 use crate::tasks::{self, EquilibriumTaskError};
@@ -33,12 +34,13 @@ impl Equilibrium {
         let system = &system.checked()?;
         let mut voltages = vec![0.0; system.sources().len()];
         for (input, value) in &self.inputs {
-            require!(value.is_finite(), "equilibrium";
-                found("{value} of {input:?}"), expected "a finite number");
+            refuse!(unless value.is_finite(), Entry("equilibrium");
+                found format!("{value} of {input:?}"), expected "a finite number");
             voltages[source(input, system)?] = *value;
         }
         let holds = self.response == Response::Relaxed || system.has_branches();
-        require!(holds, "equilibrium"; found("an instantaneous response"), expected NO_BRANCHES);
+        refuse!(unless holds, Entry("equilibrium");
+            found "an instantaneous response", expected NO_BRANCHES);
         let task = AtRest {
             voltages,
             coordinates: None,

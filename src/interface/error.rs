@@ -4,7 +4,7 @@ use crate::dynamics::{EquilibriumError, StepError};
 use crate::identify::IdentifyError;
 use crate::interface::handle::Input;
 use crate::interface::motion::Motion;
-use crate::math::Signal;
+use crate::math::{Signal, refuse};
 use crate::model::{System, SystemError};
 use crate::workflow::WorkflowError;
 use thiserror::Error;
@@ -67,22 +67,19 @@ pub enum Error {
 /// A result, or why there is none.
 pub type Result<T, E = Error> = std::result::Result<T, E>;
 
-/// Fails at an entry of a problem where something does not hold, with the value found, as it is formatted, and the value expected.
-macro_rules! require {
-    ($holds:expr, $what:expr; found($($found:tt)+), expected $expected:expr) => {
-        match $holds {
-            true => {}
-            false => {
-                return Err($crate::interface::error::Error::Problem {
-                    what: $what,
-                    found: format!($($found)+),
-                    expected: $expected,
-                });
-            }
+/// An entry of a problem.
+pub(super) struct Entry(pub(super) &'static str);
+
+impl Entry {
+    /// The error of what is found there.
+    pub(super) fn wrong(self, found: String, expected: &'static str) -> Error {
+        Error::Problem {
+            what: self.0,
+            found,
+            expected,
         }
-    };
+    }
 }
-pub(super) use require;
 
 /// A function of time for each source of a system, zero where nothing is said.
 pub(super) fn signals(
@@ -92,8 +89,9 @@ pub(super) fn signals(
 ) -> Result<Vec<Signal>> {
     let mut signals = vec![Signal::Constant(0.0); system.sources().len()];
     for (input, signal) in inputs {
-        require!(signal.is_sound(), what;
-            found("{signal:?} of {input:?}"), expected "finite numbers, and times that grow");
+        refuse!(unless signal.is_sound(), Entry(what);
+            found format!("{signal:?} of {input:?}"),
+            expected "finite numbers, and times that grow");
         signals[source(input, system)?] = signal.clone();
     }
     Ok(signals)
@@ -101,9 +99,7 @@ pub(super) fn signals(
 
 /// The source of an input of a system.
 pub(super) fn source(input: &Input, system: &System) -> Result<usize> {
-    input.source(system).ok_or_else(|| Error::Problem {
-        what: "voltage",
-        found: format!("{input:?}"),
-        expected: "a muscle or a driven electrode of the system",
-    })
+    let expected = "a muscle or a driven electrode of the system";
+    let missing = || Entry("voltage").wrong(format!("{input:?}"), expected);
+    input.source(system).ok_or_else(missing)
 }

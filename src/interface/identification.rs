@@ -5,10 +5,10 @@ use crate::control::problem::{
 };
 use crate::identify::{Identified, identify};
 use crate::interface::builder::builder;
-use crate::interface::error::{Result, require, signals};
+use crate::interface::error::{Entry, Result, signals};
 use crate::interface::handle::{Handle, Input};
 use crate::interface::state::State;
-use crate::math::{Signal, Vector, in_order};
+use crate::math::{Signal, Vector, in_order, refuse};
 use crate::model::components::{Load, Spring, Tendon};
 use crate::model::system::{Joint, Marker, Muscle};
 use crate::model::{Parameter, Pulling, Quantity, System};
@@ -140,15 +140,15 @@ impl Recording {
         let times = in_order(times.map(|reading| reading.time));
         let is_open = self.time_offset.is_none() && self.regime == Regime::Motion;
         let is_late = is_open && begin_late(&times);
-        require!(!is_late, "recording";
-            found("{} ms at the first reading", times[0]),
+        refuse!(if is_late, Entry("recording");
+            found format!("{} ms at the first reading", times[0]),
             expected "a \"time_offset\": that time if the motion begins then, or 0");
         let all = channels.iter().flat_map(|one| &one.readings);
         for reading in all {
             let numbers = [reading.time, reading.value];
             let holds = numbers.iter().all(|x| x.is_finite()) && reading.time >= 0.0;
-            require!(holds && reading.deviation > 0.0, "recording";
-                found("{} at {} ms", reading.value, reading.time),
+            refuse!(unless holds && reading.deviation > 0.0, Entry("recording");
+                found format!("{} at {} ms", reading.value, reading.time),
                 expected "finite readings at times from 0 on");
         }
         Ok(problem::Recording {
@@ -232,23 +232,24 @@ impl Identification {
         for parameter in &self.parameters {
             let [lower, guess, upper] = [parameter.lower, parameter.guess, parameter.upper];
             let holds = lower < upper && (lower..=upper).contains(&guess) && guess.is_finite();
-            require!(holds, "identification";
-                found("{:?}, {guess} in {lower}..={upper}", parameter.name),
+            refuse!(unless holds, Entry("identification");
+                found format!("{:?}, {guess} in {lower}..={upper}", parameter.name),
                 expected "a finite guess within bounds");
         }
         let resolved = |one: &Recording| one.resolve(system, &self.parameters);
         let recordings = self.recordings.iter().map(resolved);
         let recordings: Vec<_> = recordings.collect::<Result<_>>()?;
-        require!(recordings.iter().any(|one| !one.is_held_out), "identification";
-            found("{} recordings", recordings.len()),
+        refuse!(unless recordings.iter().any(|one| !one.is_held_out), Entry("identification");
+            found format!("{} recordings", recordings.len()),
             expected "one or more to which constants are fitted");
         let step = self.step.is_none_or(|step| step > 0.0 && step.is_finite());
-        require!(step, "identification"; found("{:?}", self.step), expected "a positive step");
+        refuse!(unless step, Entry("identification");
+            found format!("{:?}", self.step), expected "a positive step");
         let prior = |(name, [value, deviation]): &(String, [f64; 2])| {
             let constant = self.parameters.iter().position(|one| one.name == *name);
             let holds = constant.is_some() && value.is_finite();
-            require!(holds && *deviation > 0.0 && deviation.is_finite(), "identification";
-                found("the prior {value} ± {deviation} of {name:?}"),
+            refuse!(unless holds && *deviation > 0.0 && deviation.is_finite(), Entry("identification");
+                found format!("the prior {value} ± {deviation} of {name:?}"),
                 expected "a finite value and a positive deviation of a free parameter");
             Ok(Prior {
                 constant: constant.unwrap_or_default(),

@@ -4,11 +4,11 @@ use crate::control::problem::{self, Voltages};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, Integrator, Newton, Solving};
 use crate::interface::builder::builder;
-use crate::interface::error::{Error, Result, require, signals};
+use crate::interface::error::{Entry, Error, Result, signals};
 use crate::interface::handle::{Handle, Input};
 use crate::interface::motion::Motion;
 use crate::interface::state::State;
-use crate::math::Signal;
+use crate::math::{Signal, refuse};
 use crate::model::components::Load;
 use crate::model::{Model, System};
 use crate::stop;
@@ -79,16 +79,16 @@ impl Simulation {
 
     fn resolve(&self, system: &System) -> Result<problem::Simulation> {
         let positive = |v: f64| v > 0.0 && v.is_finite();
-        require!(positive(self.duration), "simulation";
-            found("a duration of {} ms", self.duration), expected "a positive one");
+        refuse!(unless positive(self.duration), Entry("simulation");
+            found format!("a duration of {} ms", self.duration), expected "a positive one");
         if let Some(step) = self.step {
-            require!(positive(step) && step <= self.duration, "simulation";
-                found("steps of {step} ms"), expected "positive steps within the duration");
+            refuse!(unless positive(step) && step <= self.duration, Entry("simulation");
+                found format!("steps of {step} ms"), expected "positive steps within the duration");
         }
         let controlled = self.step.is_none();
         let holds = !controlled || self.integrator == Integrator::Midpoint;
-        require!(holds, "simulation";
-            found("{} without a step", self.integrator.name()),
+        refuse!(unless holds, Entry("simulation");
+            found format!("{} without a step", self.integrator.name()),
             expected "a step: only the midpoint rule chooses its steps");
         let sources = system.sources().len();
         let signals = signals(&self.voltages, "simulation", system)?;

@@ -1,8 +1,9 @@
 //! States at the ends of a motion.
 
 use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
-use crate::interface::error::{Result, require, source};
+use crate::interface::error::{Entry, Result, source};
 use crate::interface::handle::{Handle, Input};
+use crate::math::refuse;
 use crate::model::System;
 use crate::model::system::{Body, Joint, Marker};
 use nalgebra::Vector3;
@@ -51,8 +52,8 @@ impl State {
             Self::RestAt(voltages) => {
                 let mut row = vec![0.0; sources];
                 for (input, voltage) in voltages {
-                    require!(voltage.is_finite(), "state";
-                        found("{voltage} of {input:?}"), expected "a finite input");
+                    refuse!(unless voltage.is_finite(), Entry("state");
+                        found format!("{voltage} of {input:?}"), expected "a finite input");
                     row[source(input, system)?] = *voltage;
                 }
                 BoundaryState::RestAtVoltages(row, Rest::Everything)
@@ -62,8 +63,8 @@ impl State {
                     let joints = &system.joints;
                     let named = joints.get(joint.index());
                     let holds = named.is_some_and(|j| j.has_coordinate()) && value.is_finite();
-                    require!(holds, "state";
-                        found("{value} of joint {}", joint.index()),
+                    refuse!(unless holds, Entry("state");
+                        found format!("{value} of joint {}", joint.index()),
                         expected "a finite value of a joint with one coordinate");
                 }
                 let values = values.iter().map(|&(joint, value)| (joint.index(), value));
@@ -74,14 +75,14 @@ impl State {
             Self::Places { markers, bodies } => {
                 for (marker, place) in markers {
                     let finite = place.iter().flatten().all(|x| x.is_finite());
-                    require!(marker.index() < system.markers.len() && finite, "state";
-                        found("{place:?} of marker {}", marker.index()),
+                    refuse!(unless marker.index() < system.markers.len() && finite, Entry("state");
+                        found format!("{place:?} of marker {}", marker.index()),
                         expected "a finite place of a marker");
                 }
                 for (body, orientation) in bodies {
                     let holds = body.index() < system.bodies.len() && orientation.is_sound();
-                    require!(holds, "state";
-                        found("{orientation:?} of body {}", body.index()),
+                    refuse!(unless holds, Entry("state");
+                        found format!("{orientation:?} of body {}", body.index()),
                         expected "unit vectors and a finite angle");
                 }
                 let places = markers.iter().map(|&(m, place)| (m.index(), Place(place)));
@@ -91,8 +92,8 @@ impl State {
             Self::Markers(places) => {
                 for (marker, place) in places {
                     let finite = place.iter().all(|x| x.is_finite());
-                    require!(marker.index() < system.markers.len() && finite, "state";
-                        found("{:?} of marker {}", place.as_slice(), marker.index()),
+                    refuse!(unless marker.index() < system.markers.len() && finite, Entry("state");
+                        found format!("{:?} of marker {}", place.as_slice(), marker.index()),
                         expected "a finite place of a marker");
                 }
                 let places = places.iter().map(|&(m, place)| (m.index(), place.into()));

@@ -64,44 +64,59 @@ impl Fault {
     }
 }
 
-/// A rule: what was found at a place has to hold.
-///
-/// # Errors
-/// It does not.
-pub fn rule(
-    holds: bool,
-    at: impl Display,
-    found: impl Display,
-    expected: &str,
-) -> Result<(), Fault> {
-    match holds {
-        true => Ok(()),
-        false => Err(Fault::new(at, found, expected)),
+/// A place in a part by the keys of files, for a rule that does not hold there.
+#[derive(Clone, Copy, Debug)]
+pub struct Key<D>(pub D);
+
+/// The part as a whole.
+pub const WHOLE: Key<&str> = Key("");
+
+impl<D: Display> Key<D> {
+    /// The fault of what is found here.
+    pub fn wrong(self, found: String, expected: impl Display) -> Fault {
+        Fault::new(self.0, found, expected)
+    }
+
+    /// The fault of the value here, which a file has as it is written.
+    pub fn wrong_value(self, value: impl Display, expected: impl Display) -> Fault {
+        Fault::of(self.0, value, "", expected)
     }
 }
 
-/// A rule of the value at a place, which a file has as it is written.
-///
-/// # Errors
-/// It does not hold.
-pub fn value(
-    holds: bool,
-    at: impl Display,
-    value: impl Display,
-    expected: &str,
-) -> Result<(), Fault> {
-    match holds {
-        true => Ok(()),
-        false => Err(Fault::of(at, value, "", expected)),
-    }
+/// Refuses what is found at a place, or the value there, if something holds or is there, or unless it holds.
+macro_rules! refuse {
+    (if let $there:pat = $of:expr, $at:expr; found $found:expr, expected $expected:expr) => {
+        if let $there = $of {
+            return Err($at.wrong($found.to_string(), $expected));
+        }
+    };
+    (if $holds:expr, $at:expr; found $found:expr, expected $expected:expr) => {
+        if $holds {
+            return Err($at.wrong($found.to_string(), $expected));
+        }
+    };
+    (unless $holds:expr, $at:expr; found $found:expr, expected $expected:expr) => {
+        match $holds {
+            true => {}
+            false => return Err($at.wrong($found.to_string(), $expected)),
+        }
+    };
+    (unless $holds:expr, $at:expr; value $value:expr, expected $expected:expr) => {
+        match $holds {
+            true => {}
+            false => return Err($at.wrong_value($value, $expected)),
+        }
+    };
 }
+pub(crate) use refuse;
 
 /// A value that has to be positive and finite.
 ///
 /// # Errors
 /// It is not.
 pub fn positive(at: impl Display, number: f64) -> Result<(), Fault> {
-    value(number > 0.0 && number.is_finite(), at, number, POSITIVE)
+    refuse!(unless number > 0.0 && number.is_finite(), Key(at); value number, expected POSITIVE);
+    Ok(())
 }
 
 /// A value that has to be zero or positive, and finite.
@@ -109,12 +124,8 @@ pub fn positive(at: impl Display, number: f64) -> Result<(), Fault> {
 /// # Errors
 /// It is not.
 pub fn not_negative(at: impl Display, number: f64) -> Result<(), Fault> {
-    value(
-        number >= 0.0 && number.is_finite(),
-        at,
-        number,
-        NOT_NEGATIVE,
-    )
+    refuse!(unless number >= 0.0 && number.is_finite(), Key(at); value number, expected NOT_NEGATIVE);
+    Ok(())
 }
 
 /// Refuses a name that is empty, reserved, or that of an entry before it.

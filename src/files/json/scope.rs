@@ -13,6 +13,7 @@ use crate::files::units::quantity::{Kind, PhysicalQuantity, Quantity, WRITTEN};
 use crate::math::{Fault, unique};
 
 pub(crate) use crate::files::json::error::Result;
+pub(crate) use crate::math::refuse;
 
 /// A place in a document.
 #[derive(Clone)]
@@ -247,21 +248,6 @@ impl<'a> Scope<'a> {
             .map_err(|(index, fault)| place(index).wrong(fault.found, fault.expected))
     }
 }
-
-/// Refuses what is found at a place if something holds, or is there.
-macro_rules! refuse {
-    (if let $there:pat = $of:expr, $at:expr; found $found:expr, expected $expected:expr) => {
-        if let $there = $of {
-            return Err($at.wrong($found.to_string(), $expected));
-        }
-    };
-    (if $holds:expr, $at:expr; found $found:expr, expected $expected:expr) => {
-        if $holds {
-            return Err($at.wrong($found.to_string(), $expected));
-        }
-    };
-}
-pub(crate) use refuse;
 
 /// Makes a value of the one of some entries of an object that is there, at its place.
 macro_rules! the_one {

@@ -1,7 +1,6 @@
 //! Resolution of names in a scene: bodies, points of bodies, materials.
 
-use crate::energy::ElasticLaw;
-use crate::files::json::scope::{Result, Scope, list, refuse};
+use crate::files::json::scope::{Result, Scope, list};
 use crate::files::scene::material::named_materials;
 use crate::files::scene::point::{PointSpec, vector};
 use crate::model::system::{Attachment, Material};
@@ -38,12 +37,8 @@ pub(crate) fn find_compressible(
     scope: &Scope<'_>,
 ) -> Result<Material> {
     let material = find_material(name, materials, scope)?;
-    refuse!(if let Some(ElasticLaw::Ogden { .. }) = material.law, scope;
-        found format!("{name:?}, which follows Ogden's law"),
-        expected "a law of the invariants of the strain, as \"yeoh\": only lumped muscles follow Ogden's");
-    refuse!(if material.lame_lambda.is_none(), scope;
-        found format!("{name:?}, which has neither \"lame_lambda\" nor \"poisson_ratio\""),
-        expected "a material with one of them, as finite elements need it");
+    let checked = material.check_of_elements();
+    checked.map_err(|fault| scope.refuse(&name, &fault))?;
     Ok(material)
 }
 

@@ -1,7 +1,7 @@
 //! A spring with or without a damper between two points.
 
 use crate::energy::{LinearSpring, SpanDamper};
-use crate::math::{Fault, not_negative, rule};
+use crate::math::{Fault, Key, not_negative, refuse};
 use crate::model::components::component::{Component, Kind};
 use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::{MovedPoints, Read};
@@ -105,15 +105,15 @@ impl Component for Spring {
     fn check(&self) -> Result<(), Fault> {
         not_negative("stiffness", self.stiffness.unwrap_or(0.0))?;
         not_negative("damping", self.damping.unwrap_or(0.0))?;
-        let (rest, found) = (self.rest_length, format!("{} mm", self.rest_length));
-        let holds = rest >= 0.0 && rest.is_finite();
-        rule(holds, "rest_length", found, "zero or a positive length")?;
+        let rest = self.rest_length;
+        refuse!(unless rest >= 0.0 && rest.is_finite(), Key("rest_length");
+            found format!("{rest} mm"), expected "zero or a positive length");
         // The force of a spring with a rest length has no direction where the ends meet; nor has that of a damper.
         let has_direction = self.damping.is_some() || self.stiffness.is_some() && rest > 0.0;
-        let expected =
-            "another place than \"from\", as the force along the span has no direction there";
-        let holds = !has_direction || self.length() > 0.0;
-        rule(holds, "to.at", "the place of \"from\"", expected)
+        refuse!(unless !has_direction || self.length() > 0.0, Key("to.at");
+            found "the place of \"from\"",
+            expected "another place than \"from\", as the force along the span has no direction there");
+        Ok(())
     }
 
     fn is_prestressed(&self) -> bool {

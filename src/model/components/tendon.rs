@@ -2,7 +2,7 @@
 
 use crate::energy::Cable;
 use crate::functional::Path;
-use crate::math::{Fault, not_negative, positive, rule, value};
+use crate::math::{Fault, Key, not_negative, positive, refuse};
 use crate::model::components::component::{Component, Kind};
 use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::{MovedPoints, Read};
@@ -112,25 +112,20 @@ impl Component for Tendon {
 
     fn check(&self) -> Result<(), Fault> {
         let count = self.through.len();
-        rule(
-            count >= 2,
-            "through",
-            format_args!("{count} points"),
-            "2 points or more",
-        )?;
+        refuse!(if count < 2, Key("through");
+            found format!("{count} points"), expected "2 points or more");
         for (index, pair) in self.through.windows(2).enumerate() {
-            let at = format!("through[{}].at", index + 1);
-            let found = "the place of the point before";
-            let expected =
-                "another place than the point before, as the span has no direction there";
-            rule(pair[0].at != pair[1].at, at, found, expected)?;
+            refuse!(if pair[0].at == pair[1].at, Key(format!("through[{}].at", index + 1));
+                found "the place of the point before",
+                expected "another place than the point before, as the span has no direction there");
         }
         positive("stiffness", self.stiffness)?;
         positive("rest_length", self.rest_length)?;
         let width = self.smoothing;
         not_negative("smoothing", width)?;
-        let holds = width <= 2.0 * self.rest_length;
-        value(holds, "smoothing", width, "at most twice the rest length")
+        refuse!(unless width <= 2.0 * self.rest_length, Key("smoothing");
+            value width, expected "at most twice the rest length");
+        Ok(())
     }
 
     fn is_prestressed(&self) -> bool {

@@ -1,9 +1,9 @@
 //! Rules of a system and its parts, which files and programs in Rust have in common: each says where it does not hold by the keys of files.
 
 use crate::math::{
-    DIRECTION, Fault, Vector, not_negative, positive, rule, shortest, unique, value,
+    DIRECTION, Fault, Key, Vector, WHOLE, not_negative, positive, refuse, shortest, unique,
 };
-use crate::model::components::{BlockLoad, LoadPlace};
+use crate::model::components::{BlockLoad, Load, LoadPlace};
 use crate::model::system::circuit::Circuit;
 use crate::model::system::{
     Attachment, Body, Discretisation, ElasticLaw, Fidelity, Joint, JointKind, JointSpring,
@@ -93,13 +93,8 @@ impl System {
         match &loads[index].on {
             LoadPlace::Point { at, direction, .. } => {
                 self.check_point("point", at)?;
-                let ground = "\"ground\", which no force moves";
-                rule(
-                    at.body.is_some(),
-                    "point.body",
-                    ground,
-                    "the name of a body",
-                )?;
+                refuse!(if at.body.is_none(), Key("point.body");
+                    found "\"ground\", which no force moves", expected "the name of a body");
                 check_direction("direction", direction)
             }
             LoadPlace::Block { block, load } => {
@@ -108,33 +103,21 @@ impl System {
             }
             LoadPlace::Muscle(muscle) => {
                 check_index("muscle", "muscle", *muscle, self.muscles.len())?;
-                let found = "a charge that its muscle does not take";
-                let expected = "a lumped muscle with a permittivity and without a circuit, and one charge for each";
-                rule(
-                    self.muscles[*muscle].takes_charge(),
-                    "muscle",
-                    found,
-                    expected,
-                )?;
-                let is_second = loads[..index]
-                    .iter()
-                    .any(|other| other.on == loads[index].on);
-                let found = "a second charge of one muscle";
-                rule(!is_second, "muscle", found, "one charge for each")
+                refuse!(unless self.muscles[*muscle].takes_charge(), Key("muscle");
+                    found "a charge that its muscle does not take",
+                    expected "a lumped muscle with a permittivity and without a circuit, and one charge for each");
+                let is_same = |other: &Load| other.on == loads[index].on;
+                refuse!(if loads[..index].iter().any(is_same), Key("muscle");
+                    found "a second charge of one muscle", expected "one charge for each");
+                Ok(())
             }
             LoadPlace::Joint(joint) => {
                 check_index("joint", "joint", *joint, self.joints.len())?;
                 let joint = &self.joints[*joint];
-                let found = format!(
-                    "{:?}, which is neither revolute nor prismatic, or locked",
-                    joint.name
-                );
-                rule(
-                    joint.has_coordinate(),
-                    "joint",
-                    found,
-                    "a joint with one coordinate",
-                )
+                refuse!(unless joint.has_coordinate(), Key("joint");
+                    found format!("{:?}, which is neither revolute nor prismatic, or locked", joint.name),
+                    expected "a joint with one coordinate");
+                Ok(())
             }
         }
     }
@@ -183,33 +166,23 @@ fn refused(part: Named<'_>, fault: Fault) -> SystemError {
 
 /// A part by its index; that of a handle of another system may be beyond the list.
 fn check_index(at: &str, kind: &str, index: usize, count: usize) -> Checked {
-    let expected = format!("a {kind} of the system");
-    rule(
-        index < count,
-        at,
-        format_args!("{kind} {index} of {count}"),
-        &expected,
-    )
+    refuse!(unless index < count, Key(at);
+        found format!("{kind} {index} of {count}"), expected format!("a {kind} of the system"));
+    Ok(())
 }
 
 fn check_place(at: &str, place: &Vector) -> Checked {
     let is_finite = place.iter().all(|x| x.is_finite());
-    rule(
-        is_finite,
-        at,
-        format_args!("the place {:?}", place.as_slice()),
-        "a finite place",
-    )
+    refuse!(unless is_finite, Key(at);
+        found format!("the place {:?}", place.as_slice()), expected "a finite place");
+    Ok(())
 }
 
 fn check_direction(at: &str, direction: &Vector) -> Checked {
     let is_unit = (direction.norm() - 1.0).abs() < 1e-9;
-    value(
-        is_unit,
-        at,
-        format_args!("{:?}", direction.as_slice()),
-        DIRECTION,
-    )
+    refuse!(unless is_unit, Key(at);
+        value format!("{:?}", direction.as_slice()), expected DIRECTION);
+    Ok(())
 }
 
 impl Body {
@@ -220,13 +193,13 @@ impl Body {
         let largest = moments.iter().fold(0.0, |m: f64, v| m.max(*v));
         let holds = moments.iter().all(|m| *m > 0.0 && m.is_finite())
             && sum - 2.0 * largest >= -ROUNDING * largest;
-        let found = format!("principal moments of {moments:?} g mm^2");
-        let expected = "positive moments of which none is larger than the sum of the two others";
-        rule(holds, "inertia", found, expected)?;
+        refuse!(unless holds, Key("inertia");
+            found format!("principal moments of {moments:?} g mm^2"),
+            expected "positive moments of which none is larger than the sum of the two others");
         let gram = self.directors.tr_mul(&self.directors);
         let is_rotation = (gram - nalgebra::Matrix3::identity()).amax() < 1e-9
             && self.directors.determinant() > 0.0;
-        rule(is_rotation, "", "axes that are no rotation", DIRECTION)?;
+        refuse!(unless is_rotation, WHOLE; found "axes that are no rotation", expected DIRECTION);
         check_place("position", &self.centre)
     }
 }
@@ -243,15 +216,12 @@ impl JointKind {
             .into_iter()
             .zip(there)
         {
-            value(
-                has_one || !is_there,
-                at,
-                at,
-                &format!("no such constant, {why}"),
-            )?;
+            refuse!(unless has_one || !is_there, Key(at);
+                value at, expected format!("no such constant, {why}"));
         }
-        let expected = format!("no motion, {why}");
-        rule(has_one || !there[3], "motion", "motion", &expected)
+        refuse!(unless has_one || !there[3], Key("motion");
+            found "motion", expected format!("no motion, {why}"));
+        Ok(())
     }
 }
 
@@ -260,13 +230,10 @@ impl JointKind {
 /// # Errors
 /// It is not.
 pub fn check_axes(at: &str, cosine: f64, tolerance: f64) -> Result<(), Fault> {
-    let found = format!("axes at {} deg", shortest(cosine.acos().to_degrees(), 5));
-    rule(
-        cosine.abs() <= tolerance,
-        at,
-        found,
-        "axes at 90 deg to each other",
-    )
+    refuse!(unless cosine.abs() <= tolerance, Key(at);
+        found format!("axes at {} deg", shortest(cosine.acos().to_degrees(), 5)),
+        expected "axes at 90 deg to each other");
+    Ok(())
 }
 
 impl Joint {
@@ -296,43 +263,37 @@ impl Joint {
         not_negative("damping", self.damping.unwrap_or(0.0))?;
         if let Some(JointSpring { stiffness, rest }) = self.spring {
             not_negative("stiffness", stiffness)?;
-            value(rest.is_finite(), "rest", rest, "a finite coordinate")?;
+            refuse!(unless rest.is_finite(), Key("rest");
+                value rest, expected "a finite coordinate");
         }
         if let Some(stops) = &self.stops {
             not_negative("stops.stiffness", stops.stiffness)?;
             let ([low, high], width) = (stops.at, stops.smoothing);
             let is_there = low.is_finite() || high.is_finite();
-            rule(
-                is_there,
-                "stops",
-                "neither \"min\" nor \"max\"",
-                "one of them, or both",
-            )?;
-            value(low < high, "stops.max", high, "more than \"min\"")?;
+            refuse!(unless is_there, Key("stops");
+                found "neither \"min\" nor \"max\"", expected "one of them, or both");
+            refuse!(unless low < high, Key("stops.max"); value high, expected "more than \"min\"");
             let is_width = width >= 0.0 && width.is_finite();
-            value(
-                is_width,
-                "stops.smoothing",
-                width,
-                "zero or a positive width",
-            )?;
+            refuse!(unless is_width, Key("stops.smoothing");
+                value width, expected "zero or a positive width");
         }
         let motion = &self.motion;
         let is_sound = motion.as_ref().is_none_or(|motion| motion.is_sound());
-        let expected = "finite numbers and increasing times";
-        rule(is_sound, "motion", format_args!("{motion:?}"), expected)
+        refuse!(unless is_sound, Key("motion");
+            found format!("{motion:?}"), expected "finite numbers and increasing times");
+        Ok(())
     }
 }
 
 impl Muscle {
     fn check(&self) -> Checked {
         let (span, length) = (self.to.at - self.from.at, self.length());
-        let found = "the place where the muscle starts, which makes its length zero";
-        let expected = "another place than \"from\"";
-        rule(span.norm() >= SHORTEST_SPAN, "to.at", found, expected)?;
+        refuse!(unless span.norm() >= SHORTEST_SPAN, Key("to.at");
+            found "the place where the muscle starts, which makes its length zero",
+            expected "another place than \"from\"");
         let stretch = self.prestretch.unwrap_or(1.0);
         let is_stretch = stretch > 0.0 && stretch.is_finite();
-        value(is_stretch, "prestretch", stretch, "a positive stretch")?;
+        refuse!(unless is_stretch, Key("prestretch"); value stretch, expected "a positive stretch");
         for (index, side) in self.cross_section.into_iter().enumerate() {
             let at = format!("cross_section[{index}]");
             positive(&at, side)?;
@@ -348,16 +309,12 @@ impl Muscle {
         positive("layer_thickness", self.layer_thickness)?;
         // The length of a stack of one layer is known to rounding.
         let is_inside = self.layer_thickness <= length * (1.0 + 1e-9);
-        let expected = format!(
+        refuse!(unless is_inside, Key("layer_thickness");
+        value self.layer_thickness,
+        expected format!(
             "a layer no thicker than the muscle is long, {}, such as \"50 um\"; a number without a unit is in m",
             millimetres(length)
-        );
-        value(
-            is_inside,
-            "layer_thickness",
-            self.layer_thickness,
-            &expected,
-        )?;
+        ));
         self.material
             .check()
             .map_err(|fault| fault.under("material"))?;
@@ -372,14 +329,13 @@ impl Muscle {
     }
 
     fn check_elements(&self, mesh: &Discretisation, span: &Vector) -> Checked {
-        let found = "\"section_inertia\" of a muscle of finite elements";
-        let expected = "no such key, as all inertia of finite elements counts";
-        rule(!self.section_inertia, "section_inertia", found, expected)?;
+        refuse!(if self.section_inertia, Key("section_inertia");
+            found "\"section_inertia\" of a muscle of finite elements",
+            expected "no such key, as all inertia of finite elements counts");
         check_elements(mesh.elements).map_err(|fault| fault.under("elements"))?;
         let (along, layers) = (mesh.elements[2], mesh.layers);
-        let expected = format!("a divisor of the {along} elements along the span");
-        let divides = layers > 0 && along.is_multiple_of(layers);
-        value(divides, "layers", layers, &expected)?;
+        refuse!(unless layers > 0 && along.is_multiple_of(layers), Key("layers");
+            value layers, expected format!("a divisor of the {along} elements along the span"));
         if let Some(side) = mesh.first_side {
             let is_across = span.cross(&side).norm() > ALONG * span.norm() * side.norm();
             let found = format!("{:?}", side.as_slice());
@@ -403,18 +359,16 @@ fn millimetres(length: f64) -> String {
 /// The direction, or the whole.
 pub fn check_elements(elements: [usize; 3]) -> Result<(), Fault> {
     for (axis, count) in elements.into_iter().enumerate() {
-        value(
-            count > 0,
-            format_args!("[{axis}]"),
-            count,
-            "1 element or more",
-        )?;
+        refuse!(unless count > 0, Key(format_args!("[{axis}]"));
+            value count, expected "1 element or more");
     }
     let mut counts = elements.iter();
     let total = counts.try_fold(1_usize, |total, &count| total.checked_mul(count));
     let is_built = total.is_some_and(|total| total <= MOST_ELEMENTS);
-    let expected = format!("no more than {MOST_ELEMENTS} elements in all");
-    rule(is_built, "", format_args!("{elements:?}"), &expected)
+    refuse!(unless is_built, WHOLE;
+        found format!("{elements:?}"),
+        expected format!("no more than {MOST_ELEMENTS} elements in all"));
+    Ok(())
 }
 
 impl Solid {
@@ -425,8 +379,9 @@ impl Solid {
         let mut sets = of_electrodes.chain(self.supports.iter().map(|s| &s.nodes));
         let count = self.mesh.nodes.len();
         let are_sets = sets.all(|set| !set.is_empty() && set.iter().all(|&n| n < count));
-        let found = "an electrode or support without nodes";
-        rule(are_sets, "", found, "the name of a set of the mesh")?;
+        refuse!(unless are_sets, WHOLE;
+            found "an electrode or support without nodes",
+            expected "the name of a set of the mesh");
         for electrode in &self.electrodes {
             let circuit = electrode
                 .circuit
@@ -447,16 +402,18 @@ impl Solid {
         let mut nodes = load.faces().iter().flatten();
         let is_body_force = matches!(load, BlockLoad::BodyForce(_));
         let has_faces = nodes.all(|n| *n < count) && load.faces().is_empty() == is_body_force;
-        let found = "a load without faces of its solid";
-        rule(has_faces, "", found, "a part of the surface of the block")?;
+        refuse!(unless has_faces, WHOLE;
+            found "a load without faces of its solid",
+            expected "a part of the surface of the block");
         match load {
             BlockLoad::Traction(_, along) | BlockLoad::BodyForce(along) => {
                 check_direction("direction", along)
             }
             BlockLoad::Charge(faces) => {
-                let found = "a charge that no potential feels";
-                let expected = "faces of a dielectric that touches an electrode at a voltage, other than those of this electrode";
-                rule(self.takes_charge(faces), "", found, expected)
+                refuse!(unless self.takes_charge(faces), WHOLE;
+                    found "a charge that no potential feels",
+                    expected "faces of a dielectric that touches an electrode at a voltage, other than those of this electrode");
+                Ok(())
             }
             BlockLoad::Pressure { .. } => Ok(()),
         }
@@ -473,23 +430,15 @@ impl Circuit {
         let named = [("resistance", self.resistance), ("leakage", self.leakage)];
         let mut parts = named.into_iter().filter_map(|(at, part)| Some((at, part?)));
         parts.try_for_each(|(at, part)| positive(at, part))?;
-        let found = "a circuit without parts";
-        rule(
-            *self != Self::default(),
-            "",
-            found,
-            "\"resistance\", \"leakage\" or both",
-        )?;
-        let found = "a circuit of what it does not charge";
-        rule(
-            is_driven,
-            "",
-            found,
-            "a muscle with a permittivity, or a driven electrode",
-        )?;
-        let found = "a leak without a resistor, which takes current from the source alone";
-        let expected = "\"resistance\" beside the \"leakage\" of finite elements, or no circuit";
-        rule(!is_meshed || self.resistance.is_some(), "", found, expected)
+        refuse!(unless *self != Self::default(), WHOLE;
+            found "a circuit without parts", expected "\"resistance\", \"leakage\" or both");
+        refuse!(unless is_driven, WHOLE;
+            found "a circuit of what it does not charge",
+            expected "a muscle with a permittivity, or a driven electrode");
+        refuse!(unless !is_meshed || self.resistance.is_some(), WHOLE;
+            found "a leak without a resistor, which takes current from the source alone",
+            expected "\"resistance\" beside the \"leakage\" of finite elements, or no circuit");
+        Ok(())
     }
 }
 
@@ -502,9 +451,9 @@ impl Material {
         positive("shear_modulus", self.shear_modulus)?;
         if let Some(density) = self.density {
             positive("density", density)?;
-            let expected =
-                "a density below 1e5 kg/m^3: that of silicone is \"1000 kg/m^3\", or \"1 g/cm^3\"";
-            value(density <= DENSEST, "density", density, expected)?;
+            refuse!(unless density <= DENSEST, Key("density");
+                value density,
+                expected "a density below 1e5 kg/m^3: that of silicone is \"1000 kg/m^3\", or \"1 g/cm^3\"");
         }
         self.viscosity
             .map_or(Ok(()), |viscosity| positive("viscosity", viscosity))?;
@@ -513,8 +462,8 @@ impl Material {
         // The bulk modulus λ + 2 μ/3 is positive.
         let lambda = self.lame_lambda.unwrap_or(0.0);
         let is_stable = lambda > -2.0 / 3.0 * self.shear_modulus && lambda.is_finite();
-        let expected = "a stress larger than -2/3 of the shear modulus";
-        value(is_stable, "lame_lambda", lambda, expected)?;
+        refuse!(unless is_stable, Key("lame_lambda");
+            value lambda, expected "a stress larger than -2/3 of the shear modulus");
         for (index, branch) in self.maxwell.list().iter().enumerate() {
             positive(
                 format_args!("maxwell[{index}].shear_modulus"),
@@ -527,13 +476,10 @@ impl Material {
         }
         let [low, high] = self.stretch_range.unwrap_or([1.0; 2]);
         let is_range = low > 0.0 && low <= 1.0 && high >= 1.0 && high.is_finite();
-        let expected = "two stretches with 1 between them, such as [0.6, 2]";
-        rule(
-            is_range,
-            "stretch_range",
-            format_args!("[{low}, {high}]"),
-            expected,
-        )
+        refuse!(unless is_range, Key("stretch_range");
+            found format!("[{low}, {high}]"),
+            expected "two stretches with 1 between them, such as [0.6, 2]");
+        Ok(())
     }
 
     /// Checks that finite elements can be made of it: it is compressible, and follows no law of principal stretches.
@@ -542,13 +488,9 @@ impl Material {
     /// It does not.
     pub(crate) fn check_of_elements(&self) -> Result<(), Fault> {
         if let Some(ElasticLaw::Ogden { .. }) = self.law {
+            let why = ", which follows Ogden's law";
             let expected = "a law of the invariants of the strain, as \"yeoh\": only lumped muscles follow Ogden's";
-            return Err(Fault::of(
-                "",
-                "a material",
-                ", which follows Ogden's law",
-                expected,
-            ));
+            return Err(Fault::of("", "a material", why, expected));
         }
         let why = ", which has neither \"lame_lambda\" nor \"poisson_ratio\"";
         let expected = "a material with one of them, as finite elements need it";

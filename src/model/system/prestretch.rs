@@ -8,7 +8,7 @@ use crate::element::{
     Elastomer, ElementGeometry, ElementLaw, IsochoricLaw, Local, Passive, Volume,
 };
 use crate::energy::{ElasticLaw, NeoHooke};
-use crate::math::{Fault, Vector, rule};
+use crate::math::{Fault, Key, Vector, refuse};
 use crate::mesh::grid::Grid;
 use crate::model::system::{Material, Muscle, Solid};
 
@@ -38,17 +38,17 @@ impl Solid {
         };
         let is_symmetric = stretch.iter().all(|s| s.is_finite()) && stretch == stretch.transpose();
         let is_positive = is_symmetric && stretch.cholesky().is_some();
-        let found = format!("{:?}", stretch.as_slice());
-        let expected = "a symmetric stretch with positive values";
-        rule(is_positive, "prestretch", found, expected)?;
+        refuse!(unless is_positive, Key("prestretch");
+            found format!("{:?}", stretch.as_slice()),
+            expected "a symmetric stretch with positive values");
         let volume = stretch.determinant();
         let squares = stretch.norm_squared();
         let invariant = squares * volume.powf(-2.0 / 3.0) - 3.0;
         for law in self.materials.iter().filter_map(|material| material.law) {
             if let ElasticLaw::Gent { limit } = law {
-                let found = format!("a prestretch of I1 - 3 = {invariant:.4}");
-                let expected = format!("less than Gent's limit, I1 - 3 < {limit}");
-                rule(invariant < limit, "prestretch", found, &expected)?;
+                refuse!(unless invariant < limit, Key("prestretch");
+                    found format!("a prestretch of I1 - 3 = {invariant:.4}"),
+                    expected format!("less than Gent's limit, I1 - 3 < {limit}"));
             }
         }
         Ok(())
