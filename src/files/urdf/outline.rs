@@ -7,7 +7,9 @@ use std::path::{Path, PathBuf};
 use crate::files::stl;
 use crate::files::urdf::element::LeftOut;
 use crate::files::urdf::read::{Geometry, Visual};
-use crate::mesh::triangulated::{Surface, rings_of_sphere};
+use crate::kinematics::Pose;
+use crate::mesh::triangulated::Surface;
+use crate::model::system::Shape;
 
 /// Distances in m and deviations of directions that are those of rounding.
 const NEAR: f64 = 1e-9;
@@ -58,39 +60,31 @@ fn by_key(visual: &Visual, centre: &Vector3<f64>) -> Option<(&'static str, Value
         return None;
     }
     let axes = pose.rotation.to_rotation_matrix().into_inner();
-    match *geometry {
-        Geometry::Sphere(radius) => Some(("sphere", json!({ "radius": radius }))),
-        Geometry::Cylinder { radius, length } => {
+    let Geometry::Plain(shape) = geometry else {
+        return None;
+    };
+    match *shape {
+        Shape::Sphere { radius } => Some(("sphere", json!({ "radius": radius }))),
+        Shape::Cylinder { radius, length } => {
             let axis = rounded(&axes.column(2).into_owned());
             let value = json!({ "length": length, "radius": radius, "axis": axis });
             Some(("cylinder", value))
         }
-        Geometry::Box(size) => {
+        Shape::Box { size } => {
             let near = axes.map(|entry| entry.abs().round());
             let is_aligned = (axes.map(f64::abs) - near).amax() < NEAR;
             let turned = near * Vector3::from(size);
             is_aligned.then(|| ("box", json!({ "size": turned.as_slice() })))
         }
-        Geometry::Mesh { .. } => None,
+        Shape::Surface(_) | Shape::None => None,
     }
 }
 
 /// A shape in its own frame in m, or the kind of shape that is left out.
 fn own(geometry: &Geometry, path: &Path) -> Result<Surface, String> {
     let mut surface = Surface::default();
-    let axes: [Vector3<f64>; 3] = [Vector3::x(), Vector3::y(), Vector3::z()];
     match geometry {
-        Geometry::Box(size) => {
-            let halves = [0, 1, 2].map(|i| axes[i] * (0.5 * size[i]));
-            surface.add_box(Vector3::zeros(), &halves);
-        }
-        &Geometry::Cylinder { radius, length } => {
-            let rings = [(-0.5 * length, radius), (0.5 * length, radius)];
-            surface.add_rings(Vector3::zeros(), axes, &rings);
-        }
-        &Geometry::Sphere(radius) => {
-            surface.add_rings(Vector3::zeros(), axes, &rings_of_sphere(radius));
-        }
+        Geometry::Plain(shape) => shape.add_to(&mut surface, &Pose::GROUND),
         Geometry::Mesh { file, scale } => {
             let found = mesh_file(file, path)
                 .ok_or_else(|| format!("the mesh {file:?}, where there is no file,"))?;

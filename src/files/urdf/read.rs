@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::files::json::scope::refuse;
 use crate::files::scene::point::direction;
 use crate::files::urdf::element::{Element, LeftOut, Result};
-use crate::model::system::principal;
+use crate::model::system::{Shape, principal};
 
 /// Relative excess of a moment over the sum of the two others that is one of rounding.
 const ROUNDING: f64 = 1e-12;
@@ -43,12 +43,10 @@ pub(super) struct Visual {
     pub(super) geometry: Geometry,
 }
 
-/// A shape about its origin; a cylinder along z.
+/// A shape about its origin, in m.
 #[derive(Clone)]
 pub(super) enum Geometry {
-    Box([f64; 3]),
-    Cylinder { radius: f64, length: f64 },
-    Sphere(f64),
+    Plain(Shape),
     Mesh { file: String, scale: [f64; 3] },
 }
 
@@ -191,16 +189,17 @@ fn geometry(element: &Element<'_>, left_out: &mut LeftOut) -> Result<Option<Geom
         let size = cuboid.numbers::<3>("size")?;
         refuse!(if size.iter().any(|side| *side <= 0.0), cuboid;
             found format!("size={size:?}"), expected "positive lengths");
-        return Ok(Some(Geometry::Box(size)));
+        return Ok(Some(Geometry::Plain(Shape::Box { size })));
     }
     if let Some(cylinder) = element.child("cylinder")? {
         cylinder.only(&[], &["radius", "length"], left_out);
         let (radius, length) = (cylinder.length("radius")?, cylinder.length("length")?);
-        return Ok(Some(Geometry::Cylinder { radius, length }));
+        return Ok(Some(Geometry::Plain(Shape::Cylinder { radius, length })));
     }
     if let Some(sphere) = element.child("sphere")? {
         sphere.only(&[], &["radius"], left_out);
-        return Ok(Some(Geometry::Sphere(sphere.length("radius")?)));
+        let radius = sphere.length("radius")?;
+        return Ok(Some(Geometry::Plain(Shape::Sphere { radius })));
     }
     let Some(mesh) = element.child("mesh")? else {
         return Ok(None);
