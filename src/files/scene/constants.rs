@@ -9,7 +9,7 @@ use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
 use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::Scope;
-use crate::files::json::set::Override;
+use crate::files::json::set::{Override, value_at};
 use crate::files::scene::build::build_scene;
 use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::material::named_material;
@@ -58,10 +58,11 @@ const OFFERED: &str = "the path of a number of the scene, such as \"materials.NA
      \"chain.muscles.arm\", \"springs.NAME.stiffness\", \"joints.NAME.damping\", \"bodies.NAME.mass\"";
 /// Numbers that differ by less, relative to their size, are the same.
 const SAME: f64 = 1e-9;
-/// Part of the way between the bounds at which constants are linear too: the lesser part of the golden section.
+/// Part of the way between the bounds that nothing singles out: the lesser part of the golden section.
 const BETWEEN: f64 = 0.381_966_011_250_105_1;
-/// Part of the way at which polynomials are compared once more.
-const APART: f64 = 0.79;
+/// Parts of the way at which constants are compared with straight lines, through which polynomials go, and at which these are compared. Beside
+/// bounds and scene, two of which may coincide.
+const PLACES: [f64; 3] = [BETWEEN, 1.0 - BETWEEN, 0.79];
 /// A factor that differs by less from one is one.
 const ONE: f64 = 1e-12;
 
@@ -96,8 +97,8 @@ impl NoConstant {
 }
 
 impl WrittenScene<'_> {
-    /// The scene as it is written, with all that a path may name.
-    fn spec_for(&self, path: &JsonPath) -> Result<SceneSpec, NoConstant> {
+    /// The text of the scene as it is written, with all that a path may name.
+    fn text_for(&self, path: &JsonPath) -> Result<String, NoConstant> {
         let mut spec = self.spec.clone();
         add_named(&mut spec);
         let is_of_chain = matches!(path.0.first(), Some(Step::Key(key)) if key == "chain");
@@ -111,37 +112,26 @@ impl WrittenScene<'_> {
             })?;
             spec.materials.insert(name.clone(), material);
         }
-        Ok(match is_of_chain {
-            true => spec,
-            false => expanded(spec),
-        })
+        if !is_of_chain {
+            spec = expanded(spec);
+        }
+        Ok(serde_json::to_string(&spec).expect("a scene is JSON"))
     }
 
     /// The value at a path as it is written; none where nothing is.
     pub(crate) fn written(&self, path: &JsonPath) -> Option<Value> {
-        let spec = serde_json::to_value(self.spec_for(path).ok()?).ok()?;
-        let step = |value: Value, step: &Step| match step {
-            Step::Key(key) => value.get(key).or_else(|| named(&value, key)).cloned(),
-            Step::Index(index) => value.get(index).cloned(),
-        };
-        path.0.iter().try_fold(spec, step)
+        value_at(&self.text_for(path).ok()?, path)
     }
 
     /// The system of the scene with a value in the place of a path.
     pub(crate) fn with(&self, path: &JsonPath, value: &Value) -> Result<System, NoConstant> {
-        let spec = self.spec_for(path)?;
-        let text = serde_json::to_string(&spec).expect("a scene is JSON");
-        let mut document = Document::of_text(&self.document.path, text)
+        let mut document = Document::of_text(&self.document.path, self.text_for(path)?)
             .map_err(|error| NoConstant::of_value(&error))?;
         let change = Override::new(path.clone(), value.clone());
-        let not_there = |error: &SceneError| NoConstant::of_path(error.found(), error.expected());
-        change
-            .apply(&mut document)
-            .map_err(|error| not_there(&error))?;
-        let changed: SceneSpec = document
-            .parse()
-            .map_err(|error| NoConstant::of_value(&error))?;
-        let system = build_scene(&changed, &Scope::of(&document));
+        let applied = change.apply(&mut document);
+        applied.map_err(|error| NoConstant::of_path(error.found(), error.expected()))?;
+        let changed = document.parse();
+        let system = changed.and_then(|spec| build_scene(&spec, &Scope::of(&document)));
         system.map_err(|error| NoConstant::of_value(&error))
     }
 
@@ -163,8 +153,8 @@ impl WrittenScene<'_> {
         let mut base = self.system.clone();
         let mut changes = Vec::new();
         for constant in Constant::all(&high) {
-            let [a, b] = [constant.value(&mut low), constant.value(&mut high)];
-            let (Some(a), Some(b)) = (a, b) else { continue };
+            let ends = [constant.value(&mut low), constant.value(&mut high)];
+            let [Some(a), Some(b)] = ends else { continue };
             if a == b {
                 continue;
             }
@@ -180,16 +170,7 @@ impl WrittenScene<'_> {
         }
         self.check_rest(base, &changes, &high)?;
         let followers = self.followers(&place, &changes, [lower, upper])?;
-        let found =
-            match self.are_polynomials(&place, &followers, lower + APART * (upper - lower))? {
-                true => in_own_units(followers, lower, upper, self.system),
-                false => None,
-            };
-        found.ok_or_else(|| {
-            let found =
-                "a number of the scene of which a constant is no polynomial of third degree";
-            NoConstant::of_path(found, OFFERED)
-        })
+        in_own_units(followers, lower, upper, self.system).ok_or_else(no_polynomial)
     }
 
     /// The straight lines through the values of constants at both bounds; where one is none, polynomials of third degree. Each with the value
@@ -200,47 +181,31 @@ impl WrittenScene<'_> {
         changes: &[Change],
         [lower, upper]: [f64; 2],
     ) -> Result<Vec<(Follower, f64)>, NoConstant> {
-        // Beside bounds and scene, two of which may coincide, at places that nothing singles out.
-        let at = [BETWEEN, 1.0 - BETWEEN].map(|t| lower + t * (upper - lower));
-        let inside = |at: f64| -> Result<Vec<f64>, NoConstant> {
+        let at = PLACES.map(|part| lower + part * (upper - lower));
+        let values = |at: f64| -> Result<Vec<f64>, NoConstant> {
             let mut system = self.with(place, &Value::from(at))?;
-            let value = |change: &Change| change.constant.value(&mut system);
-            let values = changes.iter().map(value);
-            Ok(values.map(|value| value.unwrap_or(f64::NAN)).collect())
+            let value = |change: &Change| change.constant.value(&mut system).unwrap_or(f64::NAN);
+            Ok(changes.iter().map(value).collect())
         };
         let lines = changes.iter().map(|change| change.line([lower, upper]));
-        let lines: Vec<Follower> = lines.collect();
-        let first = inside(at[0])?;
-        let mut all = changes.iter().zip(&lines).zip(&first);
-        let second = match all.all(|((change, line), &value)| change.is_on(line, at[0], value)) {
-            true => None,
-            false => Some(inside(at[1])?),
-        };
-        let follower = |(i, change): (usize, &Change)| {
-            let line = lines[i];
-            let curved = second.as_ref().map(|second| [first[i], second[i]]);
-            let curved = curved.map(|inside| change.polynomial(line, [lower, upper], at, inside));
-            (curved.unwrap_or(line), change.given)
-        };
-        Ok(changes.iter().enumerate().map(follower).collect())
-    }
-
-    /// Returns true if the polynomials meet the constants at another value too; straight lines are known to.
-    fn are_polynomials(
-        &self,
-        place: &JsonPath,
-        followers: &[(Follower, f64)],
-        at: f64,
-    ) -> Result<bool, NoConstant> {
-        if followers.iter().all(|(one, _)| one.is_linear()) {
-            return Ok(true);
+        let mut followers: Vec<Follower> = lines.collect();
+        let first = values(at[0])?;
+        let mut all = changes.iter().zip(&followers).zip(&first);
+        if !all.all(|((change, line), &value)| change.is_on(line, at[0], value)) {
+            let [second, third] = [values(at[1])?, values(at[2])?];
+            for (i, change) in changes.iter().enumerate() {
+                let inside = [first[i], second[i]];
+                let one = change.polynomial(followers[i], [lower, upper], [at[0], at[1]], inside);
+                let differs = (one.at(at[2]) - third[i]).abs();
+                let is_met = differs <= SAME * third[i].abs().max(change.given.abs());
+                if !one.is_linear() && !is_met {
+                    return Err(no_polynomial());
+                }
+                followers[i] = one;
+            }
         }
-        let mut other = self.with(place, &Value::from(at))?;
-        let mut curved = followers.iter().filter(|(one, _)| !one.is_linear());
-        Ok(curved.all(|(one, given)| {
-            let value = one.constant.value(&mut other).unwrap_or(f64::NAN);
-            (one.at(at) - value).abs() <= SAME * value.abs().max(given.abs())
-        }))
+        let given = changes.iter().map(|change| change.given);
+        Ok(followers.into_iter().zip(given).collect())
     }
 
     /// That nothing of the system depends on the number but the followers.
@@ -250,32 +215,25 @@ impl WrittenScene<'_> {
         changes: &[Change],
         high: &System,
     ) -> Result<(), NoConstant> {
-        if changes.is_empty() {
-            let found = match base == *high {
-                true => "a number of the scene on which nothing depends",
-                false => "no number of the scene that can be sought",
-            };
-            return Err(NoConstant::of_path(found, OFFERED));
-        }
         for change in changes {
             change.constant.set(change.ends[1], &mut base);
         }
-        match base == *high {
-            true => Ok(()),
-            false => {
-                let found =
-                    "a number of the scene on which more depends than constants of energies";
-                Err(NoConstant::of_path(found, OFFERED))
+        let found = match (base == *high, changes.is_empty()) {
+            (true, false) => return Ok(()),
+            (true, true) => "a number of the scene on which nothing depends",
+            (false, true) => "no number of the scene that can be sought",
+            (false, false) => {
+                "a number of the scene on which more depends than constants of energies"
             }
-        }
+        };
+        Err(NoConstant::of_path(found, OFFERED))
     }
 }
 
-/// The entry of a list that has a name.
-fn named<'v>(list: &'v Value, name: &str) -> Option<&'v Value> {
-    let entries = list.as_array()?.iter();
-    let is_it = |entry: &&Value| entry.get("name").and_then(Value::as_str) == Some(name);
-    entries.clone().find(is_it)
+/// The reason of a number by which constants curve otherwise.
+fn no_polynomial() -> NoConstant {
+    let found = "a number of the scene of which a constant is no polynomial of third degree";
+    NoConstant::of_path(found, OFFERED)
 }
 
 /// A constant that the bounds of a number change.
