@@ -2,13 +2,12 @@
 
 use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse};
-use crate::files::scene::graph::tree_freedoms;
 use crate::files::scene::names::names;
 use crate::files::units::quantity::{
     Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity, Voltage,
 };
 use crate::model::system::{JointKind, Source, System, voltage_sources};
-use crate::model::{Coordinates, PartKind};
+use crate::model::{Coordinates, Graph, PartKind};
 use std::collections::BTreeMap;
 use std::ops::Deref;
 use std::rc::Rc;
@@ -202,7 +201,7 @@ impl<'a> At<'a> {
 
     /// Coordinates of this task as they are written.
     pub(crate) fn coordinates(&self, spec: Option<CoordinatesSpec>) -> Result<Option<Coordinates>> {
-        let is_tree = || tree_freedoms(self.system.bodies.len(), &self.system.joints).is_some();
+        let is_tree = || Graph::new(self.system).loops().is_empty();
         refuse!(if spec == Some(CoordinatesSpec::Reduced) && !is_tree(), self.key("coordinates");
             found "\"reduced\", though the joints close a loop", expected "\"redundant\"");
         Ok(spec.map(Into::into))

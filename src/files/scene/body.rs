@@ -1,4 +1,4 @@
-//! Conversion of a body of a scene file to its principal moments of inertia and directors.
+//! Conversion of a body of a scene file to its principal moments of inertia and directors, and what has to hold bodies.
 
 use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 
@@ -8,8 +8,9 @@ use crate::files::scene::point::{unit_axis, vector};
 use crate::files::scene::spec::{BodyMeshSpec, BodySpec};
 use crate::files::stl;
 use crate::kinematics::Pose;
+use crate::math::DisjointSets;
 use crate::mesh::triangulated::Surface;
-use crate::model::system::{Body, Shape, directors_along, is_diagonal, principal};
+use crate::model::system::{Body, Joint, Shape, directors_along, is_diagonal, principal};
 
 /// The body that is written.
 pub(crate) fn body(spec: &BodySpec, scope: &Scope<'_>) -> Result<Body> {
@@ -185,4 +186,33 @@ fn with_tensor(body: Body, surface: Option<Surface>, tensor: &Matrix3<f64>) -> B
         shape,
         ..body
     }
+}
+
+/// Every body hangs on the ground or together with a free one, and no free one hangs on the ground.
+pub(crate) fn check_connected<'a>(
+    bodies: &[BodySpec],
+    joints: &[Joint],
+    scope: impl Fn(usize) -> Scope<'a>,
+) -> Result<()> {
+    // The part of each body, and of the ground in the last entry.
+    let mut sets = DisjointSets::new(bodies.len() + 1);
+    for joint in joints {
+        sets.join(joint.parent.unwrap_or(bodies.len()), joint.child);
+    }
+    let parts = sets.all();
+    let ground = parts[bodies.len()];
+    for (index, body) in bodies.iter().enumerate() {
+        let grounded = parts[index] == ground;
+        refuse!(if body.free && grounded, scope(index);
+            found format!("{:?} free, though joints lead to the ground", body.name),
+            expected "no \"free\" here");
+        let mut part = bodies
+            .iter()
+            .zip(&parts)
+            .filter(|(_, part)| **part == parts[index]);
+        refuse!(if !grounded && !part.any(|(body, _)| body.free), scope(index);
+            found format!("{:?}, which no chain of joints connects to the ground", body.name),
+            expected "a joint that leads to the ground, or \"free\": true");
+    }
+    Ok(())
 }

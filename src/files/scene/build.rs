@@ -2,12 +2,10 @@
 
 use crate::files::json::path::JsonPath;
 use crate::files::json::scope::{Result, Scope, refuse, the_one};
-use crate::files::scene::body::body;
-use crate::files::scene::components::spring::ComponentSpec;
-use crate::files::scene::components::{Carriers, component_lists, load};
+use crate::files::scene::body::{body, check_connected};
 use crate::files::scene::expand::{add_named, expanded};
-use crate::files::scene::graph::check_connected;
 use crate::files::scene::joint::joint;
+use crate::files::scene::load::{Carriers, load};
 use crate::files::scene::material::materials;
 use crate::files::scene::muscle::muscle;
 use crate::files::scene::names::{find_body, names};
@@ -15,9 +13,10 @@ use crate::files::scene::nodes::place;
 use crate::files::scene::point::{unit_axis, vector};
 use crate::files::scene::solid::solid;
 use crate::files::scene::spec::{ChainSpec, MarkerSpec, SceneSpec};
+use crate::files::scene::spring::{spring, tendon};
 use crate::mesh::Mesh;
 use crate::model::MOST_ELEMENTS;
-use crate::model::components::{Components, Load};
+use crate::model::components::Components;
 use crate::model::system::{Attachment, Marker, Solid, System, number_sources};
 use nalgebra::Vector3;
 use std::cell::Cell;
@@ -72,7 +71,16 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
             .as_ref()
             .map(vector)
             .filter(|g| g.norm() > 0.0),
-        components: components(&scene, loads, &body_names, &lists)?,
+        components: Components {
+            springs: lists.build("springs", &scene.springs, |spec, scope| {
+                spring(spec, &body_names, scope)
+            })?,
+            tendons: lists.build("tendons", &scene.tendons, |spec, scope| {
+                tendon(spec, &body_names, scope)
+            })?,
+            loads,
+            others: Vec::new(),
+        },
         joints,
         name: scene.name,
     };
@@ -220,29 +228,6 @@ fn check_chain(chain: &ChainSpec, scope: &Scope<'_>) -> Result<()> {
     }
     Ok(())
 }
-
-/// Defines what visits all lists.
-macro_rules! visits {
-    ($($(#[$about:meta])* $list:ident: $spec:ty,)*) => {
-        /// The components that are written, beside these loads.
-        fn components(
-            scene: &SceneSpec,
-            loads: Vec<Load>,
-            bodies: &[String],
-            lists: &Lists<'_>,
-        ) -> Result<Components> {
-            Ok(Components {
-                $($list: lists.build(stringify!($list), &scene.$list, |spec, scope| {
-                    spec.component(bodies, scope)
-                })?,)*
-                loads,
-                others: Vec::new(),
-            })
-        }
-    };
-}
-
-component_lists!(visits);
 
 /// The marker that is written.
 pub(crate) fn marker(

@@ -1,18 +1,17 @@
 //! The scene file: its types as written (`spec`, `spec_solids`, `point`) and their conversion to a [`System`](crate::model::System).
 //!
-//! - `build`: the scene; `body`, `joint`, `material`, `muscle`, `components`: its parts, each described and converted in one file.
-//! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `graph`: connections by joints; `names`: resolution of names.
+//! - `build`: the scene; `body`, `joint`, `material`, `muscle`, `spring`, `load`: its parts, each described and converted in one file.
+//! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `names`: resolution of names.
 //! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
 
 pub(crate) mod body;
 pub(crate) mod build;
-pub mod components;
 pub(crate) mod constants;
 pub(crate) mod electrodes;
 pub(crate) mod expand;
-pub(crate) mod graph;
 pub mod joint;
+pub mod load;
 pub mod material;
 pub(crate) mod mesh;
 pub(crate) mod muscle;
@@ -22,4 +21,5 @@ pub mod point;
 pub(crate) mod solid;
 pub mod spec;
 pub mod spec_solids;
+pub mod spring;
 pub(crate) mod trunk;

@@ -3,55 +3,49 @@
 use std::collections::BTreeMap;
 
 use crate::files::json::objects::objects;
-use crate::files::scene::components::{LoadSpec, SpringSpec, TendonSpec, component_lists};
 use crate::files::scene::joint::JointSpec;
+use crate::files::scene::load::LoadSpec;
 use crate::files::scene::material::MaterialSpec;
 use crate::files::scene::point::{Point, PointSpec};
 use crate::files::scene::spec_solids::{CircuitSpec, ElementSpec, SolidSpec};
+use crate::files::scene::spring::{SpringSpec, TendonSpec};
 use crate::files::units::quantity::{
     Acceleration, Angle, Density, Length, Mass, MomentOfInertia, Quantity,
 };
 
-/// Declares the scene with the lists of components between points.
-macro_rules! scene {
-    ($($(#[$about:meta])* $list:ident: $spec:ty,)*) => { objects! {
-        /// Scene. Positions and axes are given in the reference configuration, in the ground frame; parts that are not written do not exist.
-        #[derive(Default)]
-        pub struct SceneSpec {
-            /// JSON Schema of this file, for editors.
-            #[serde(rename = "$schema")]
-            pub schema: Option<String>,
-            /// Name for captions.
-            pub name: String,
-            /// Elastomers by name.
-            pub materials: BTreeMap<String, MaterialSpec>,
-            /// Rigid bodies; `ground` is there without being written.
-            pub bodies?: Vec<BodySpec>,
-            /// Joints between bodies or to the ground.
-            pub joints?: Vec<JointSpec>,
-            /// Dielectric elastomer muscles.
-            pub muscles?: Vec<MuscleSpec>,
-            /// Elastic blocks of finite elements.
-            pub solids?: Vec<SolidSpec>,
-            $(
-                $(#[$about])*
-                pub $list?: Vec<$spec>,
-            )*
-            /// Forces and torques whose sizes a problem gives or seeks.
-            pub loads?: Vec<LoadSpec>,
-            /// Points whose motion is reported.
-            pub markers?: Vec<MarkerSpec>,
-            /// Acceleration of gravity, SI unit m/s².
-            pub gravity: Option<[Quantity<Acceleration>; 3]>,
-            /// Shorthand for a chain of segments with a pair of muscles at each joint.
-            pub chain: Option<ChainSpec>,
-        }
-    } };
-}
-
-component_lists!(scene);
-
 objects! {
+    /// Scene. Positions and axes are given in the reference configuration, in the ground frame; parts that are not written do not exist.
+    #[derive(Default)]
+    pub struct SceneSpec {
+        /// JSON Schema of this file, for editors.
+        #[serde(rename = "$schema")]
+        pub schema: Option<String>,
+        /// Name for captions.
+        pub name: String,
+        /// Elastomers by name.
+        pub materials: BTreeMap<String, MaterialSpec>,
+        /// Rigid bodies; `ground` is there without being written.
+        pub bodies?: Vec<BodySpec>,
+        /// Joints between bodies or to the ground.
+        pub joints?: Vec<JointSpec>,
+        /// Dielectric elastomer muscles.
+        pub muscles?: Vec<MuscleSpec>,
+        /// Elastic blocks of finite elements.
+        pub solids?: Vec<SolidSpec>,
+        /// Springs and dampers between two points.
+        pub springs?: Vec<SpringSpec>,
+        /// Elastic cables through points.
+        pub tendons?: Vec<TendonSpec>,
+        /// Forces and torques whose sizes a problem gives or seeks.
+        pub loads?: Vec<LoadSpec>,
+        /// Points whose motion is reported.
+        pub markers?: Vec<MarkerSpec>,
+        /// Acceleration of gravity, SI unit m/s².
+        pub gravity: Option<[Quantity<Acceleration>; 3]>,
+        /// Shorthand for a chain of segments with a pair of muscles at each joint.
+        pub chain: Option<ChainSpec>,
+    }
+
     /// A rigid body: a mass or a density; one shape, or an explicit inertia, or both.
     #[derive(Default)]
     pub struct BodySpec {

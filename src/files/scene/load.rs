@@ -1,4 +1,4 @@
-//! Loads.
+//! Loads as they are written, and their conversion.
 
 use crate::files::json::objects::objects;
 use crate::files::json::scope::{Result, Scope, refuse, the_one};
