@@ -8,7 +8,7 @@
 #[path = "../tests/common/random_goals.rs"]
 mod random_goals;
 
-use proboscis::control::problem::{Combined, Control, Task};
+use proboscis::control::problem::{Combined, Task};
 use proboscis::control::{Motion, Motions};
 use proboscis::files::read_problem;
 use proboscis::workflow::parallel_map::parallel_map;

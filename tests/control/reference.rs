@@ -69,11 +69,8 @@ fn solve(name: &str, segments: usize, coordinates: Coordinates) {
     let initial = guess(&model, &boundary, &control, h, None);
     let mut program = Transcription::new(&model, &boundary, &control, &initial).unwrap();
     let start = program.start(&initial);
-    // Two evaluations a variable: large programs are left to tests/functional.rs, which checks small ones of each kind.
-    if start.x.len() < 2000 {
-        let report = differences::check(&mut program, &start.x, 7);
-        assert!(report.is_consistent(), "{report}");
-    }
+    let report = differences::check(&mut program, &start.x, 7);
+    assert!(report.is_consistent(), "{report}");
     println!(
         "{name} {coordinates:?}: {} variables, {} rows",
         start.x.len(),

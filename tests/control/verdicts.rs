@@ -44,6 +44,7 @@ pub(crate) fn request() -> CommandInput {
         figures: Figures::default(),
         progress: ProgressDisplay::Never,
         page: PageWanted::Written,
+        once: false,
     }
 }
 
