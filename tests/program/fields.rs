@@ -77,6 +77,7 @@ pub(crate) fn request(input: PathBuf, output: &Path, set: &[&str]) -> CommandInp
         figures: Figures::default(),
         progress: ProgressDisplay::Never,
         page: PageWanted::Written,
+        once: false,
     }
 }
 

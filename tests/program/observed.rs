@@ -45,6 +45,7 @@ fn request(input: PathBuf, output: &Path) -> CommandInput {
         figures: Figures::default(),
         progress: ProgressDisplay::Never,
         page: PageWanted::Written,
+        once: false,
     }
 }
 

@@ -25,6 +25,7 @@ fn solved_from(problem: &str, folder: &Path, changes: &[&str]) -> Value {
         figures: Default::default(),
         progress: ProgressDisplay::Never,
         page: Default::default(),
+        once: false,
     };
     run(&input).expect("a run");
     let text = fs::read_to_string(folder.join("summary.json")).expect("a summary");
