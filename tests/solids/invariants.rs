@@ -289,7 +289,7 @@ fn the_energy_of_an_elastic_block_does_not_drift() {
     // A fiftieth of the period of the first longitudinal mode, 4 L √(ρ/E).
     let h = 0.1;
     let model = Model::new(system(vec![clamped(None)]), None, h, &[]).unwrap();
-    let steps = 5_000;
+    let steps = 10_000;
     let z = model.coordinates_at(&[]);
     let momentum = vec![0.0; z.len()];
     let mut stepper = Stepper::new(&model, &z, &momentum, Default::default());
