@@ -82,6 +82,11 @@ impl<'a> Scope<'a> {
         self.document.mistake(&self.place, found, expected)
     }
 
+    /// The error of an entry that is needed here.
+    pub(crate) fn missing_key(&self, key: &str) -> SceneError {
+        self.wrong(format!("no key {key:?}"), format!("the key {key:?}"))
+    }
+
     /// The error of a fault of what is written here.
     pub(crate) fn refuse<S: Serialize + JsonSchema>(
         &self,

@@ -2,7 +2,7 @@
 
 use serde::Deserialize;
 use serde::de::IgnoredAny;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
@@ -11,7 +11,7 @@ use crate::dynamics::StepState;
 use crate::files::continuation;
 use crate::files::json::scope::{Result, Scope, list, refuse};
 use crate::files::problem::at::At;
-use crate::files::problem::voltages::solution_document;
+use crate::files::solution::{Body, ConfigurationRecord, record};
 use crate::kinematics::Pose;
 use crate::math::{Matrix, Vector};
 use crate::model::Coordinates;
@@ -24,46 +24,6 @@ const WRITTEN: &str = "a result that simulate or solve wrote";
 const SOLVED: [&str; 4] = ["solved", "acceptable", "feasible_point", "not_held"];
 /// Status of a simulation that came to its end; others go as far as they go.
 const SIMULATED: &str = "simulated";
-
-/// Entries that are read of a solution.
-#[derive(Deserialize)]
-struct Ended {
-    configuration: Configuration,
-    #[serde(default)]
-    coordinates: Option<String>,
-    #[serde(default)]
-    state: Option<State>,
-    #[serde(default)]
-    voltages: BTreeMap<String, Vec<f64>>,
-    #[serde(default)]
-    loads: BTreeMap<String, Vec<f64>>,
-    #[serde(default)]
-    hold: Option<BTreeMap<String, f64>>,
-}
-
-#[derive(Deserialize)]
-struct Configuration {
-    #[serde(default)]
-    bodies: BTreeMap<String, Body>,
-    #[serde(default)]
-    joints: BTreeMap<String, IgnoredAny>,
-}
-
-#[derive(Deserialize)]
-struct Body {
-    centre: Vec<[f64; 3]>,
-    directors: Vec<[[f64; 3]; 3]>,
-}
-
-#[derive(Deserialize)]
-struct State {
-    #[serde(default)]
-    z: Vec<Vec<f64>>,
-    #[serde(default)]
-    momentum: Vec<f64>,
-    #[serde(default)]
-    meshes_mm: BTreeMap<String, Vec<[f64; 3]>>,
-}
 
 /// Entries that are read of a summary.
 #[derive(Deserialize)]
@@ -78,13 +38,15 @@ struct Summary {
 pub(crate) fn end_of(path: &str, at: &At<'_>) -> Result<EndState> {
     let file = at.solution_file(path, FOLDER)?;
     let notes = status(&file, at)?;
-    let document = solution_document(&file, |name| {
-        ["state/", "voltages/", "loads/", "configuration/"]
-            .iter()
-            .any(|of| name.starts_with(of))
-    })?;
-    let ended: Ended = document.parse()?;
-    check_names(&ended, path, at)?;
+    let (document, ended) = record(&file, |name| !name.starts_with("costates/"))?;
+    let configuration = ended.configuration;
+    let configuration =
+        configuration.ok_or_else(|| Scope::of(&document).missing_key("configuration"))?;
+    let (voltages, loads) = (
+        ended.voltages.unwrap_or_default(),
+        ended.loads.unwrap_or_default(),
+    );
+    check_names(&configuration, voltages.keys(), path, at)?;
     let untold = |what: &str| at.wrong(format!("{path:?}, which does not tell {what}"), WRITTEN);
     let coordinates = ended.coordinates.as_deref().and_then(Coordinates::named);
     let coordinates = coordinates.ok_or_else(|| untold("in which \"coordinates\" it is"))?;
@@ -97,7 +59,7 @@ pub(crate) fn end_of(path: &str, at: &At<'_>) -> Result<EndState> {
     }
     let mut poses = Vec::new();
     for body in &at.system.bodies {
-        let Body { centre, directors } = &ended.configuration.bodies[&body.name];
+        let Body { centre, directors } = &configuration.bodies[&body.name];
         let (Some(centre), Some(directors)) = (centre.last(), directors.last()) else {
             return Err(untold(&format!("where body {:?} ended", body.name)));
         };
@@ -106,17 +68,13 @@ pub(crate) fn end_of(path: &str, at: &At<'_>) -> Result<EndState> {
             directors: Matrix::from(*directors),
         });
     }
-    let mut voltages = Vec::new();
+    let mut inputs = Vec::new();
     for source in at.sources.iter() {
         let held = ended.hold.as_ref().and_then(|hold| hold.get(&source.name));
-        let all = if source.is_load() {
-            &ended.loads
-        } else {
-            &ended.voltages
-        };
+        let all = if source.is_load() { &loads } else { &voltages };
         let last = all.get(&source.name).and_then(|list| list.last());
         let (_, unit) = source.kind.si();
-        voltages.push(held.or(last).copied().unwrap_or(0.0) * unit);
+        inputs.push(held.or(last).copied().unwrap_or(0.0) * unit);
     }
     Ok(EndState {
         source: file.parent().unwrap_or(&file).to_owned(),
@@ -126,7 +84,7 @@ pub(crate) fn end_of(path: &str, at: &At<'_>) -> Result<EndState> {
         momentum: state.momentum,
         poses,
         meshes: state.meshes_mm,
-        voltages,
+        voltages: inputs,
         notes,
     })
 }
@@ -162,8 +120,13 @@ fn status(file: &Path, at: &Scope<'_>) -> Result<Vec<String>> {
 }
 
 /// Refuses a result of other bodies, joints or sources.
-fn check_names(ended: &Ended, path: &str, at: &At<'_>) -> Result<()> {
-    let Configuration { bodies, joints } = &ended.configuration;
+fn check_names<'v>(
+    configuration: &ConfigurationRecord,
+    mut voltages: impl Iterator<Item = &'v String>,
+    path: &str,
+    at: &At<'_>,
+) -> Result<()> {
+    let ConfigurationRecord { bodies, joints } = configuration;
     let own_bodies: BTreeSet<_> = at.system.bodies.iter().map(|body| &body.name).collect();
     let own_joints = at.system.joints.iter().filter(|one| one.has_coordinate());
     let own_joints = own_joints.map(|joint| &joint.name).collect();
@@ -178,8 +141,7 @@ fn check_names(ended: &Ended, path: &str, at: &At<'_>) -> Result<()> {
             found format!("{path:?}, whose {kind} {name:?} is not in the scene"),
             expected "a result of the same robot");
     }
-    let mut named = ended.voltages.keys();
-    let unknown = named.find(|name| !at.sources.iter().any(|source| source.name == **name));
+    let unknown = voltages.find(|name| !at.sources.iter().any(|source| source.name == **name));
     refuse!(if let Some(name) = unknown, at;
         found format!("{path:?}, whose muscle or electrode {name:?} is not in the scene"),
         expected "a result of the same robot");

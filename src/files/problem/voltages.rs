@@ -1,12 +1,11 @@
 //! Voltages over time: by the names of sources, from an earlier `solution.json`, or a table in the problem.
 
 use crate::control::problem::{Afterwards, Voltages};
-use crate::files::json::document::Document;
 use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::{At, VoltageMap};
 use crate::files::signal::{SignalSpec, signal};
-use crate::files::solution::complete;
+use crate::files::solution::record;
 use crate::files::units::quantity::{Quantity, Time, Voltage};
 use crate::math::Signal;
 use crate::model::system::System;
@@ -47,38 +46,17 @@ pub(crate) fn signals(
     Ok(Voltages::of_signals(signals))
 }
 
-/// An earlier `solution.json` with those of its arrays that are wanted, wherever they stand.
-pub(crate) fn solution_document(path: &Path, is_wanted: impl Fn(&str) -> bool) -> Result<Document> {
-    let mut document = Document::read(path)?;
-    match complete(path, &mut document.tree, is_wanted) {
-        Ok(()) => Ok(document),
-        Err(reason) => Err(Scope::of(&document)
-            .key("arrays")
-            .wrong(reason.to_string(), "the file that was written with it")),
-    }
-}
-
-/// Entries that are read of a solution.
-#[derive(Debug, Deserialize)]
-struct SolutionRecord {
-    /// Instants in s.
-    time: Vec<f64>,
-    /// Voltages in V by source, one per interval.
-    voltages: BTreeMap<String, Vec<f64>>,
-    /// Voltages in V by source that hold the goal; a motion without a goal, or with one whose voltages are not known, has none.
-    #[serde(default)]
-    hold: Option<BTreeMap<String, f64>>,
-}
-
 /// Voltages of a solution, then those that hold its goal, or where it names none the last ones; 0 for sources that it does
 /// not know.
 fn of_solution(path: &Path, system: &System) -> Result<Voltages> {
-    let document =
-        &solution_document(path, |name| name == "time" || name.starts_with("voltages/"))?;
-    let solution: SolutionRecord = document.parse()?;
-    let at = At::new(&Scope::of(document), system);
+    let is_wanted = |name: &str| name == "time" || name.starts_with("voltages/");
+    let (document, solution) = record(path, is_wanted)?;
+    let at = At::new(&Scope::of(&document), system);
     let instants: Vec<f64> = solution.time.iter().map(|time| 1e3 * time).collect();
-    let all_series = solution.voltages.iter();
+    let voltages = solution
+        .voltages
+        .ok_or_else(|| at.missing_key("voltages"))?;
+    let all_series = voltages.iter();
     let all_series = all_series.map(|(name, series)| (name, series.iter().copied()));
     let rows = rows(&instants, all_series, &at)?;
     let hold = at.optional("hold", &solution.hold, |at, hold| {

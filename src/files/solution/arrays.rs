@@ -9,7 +9,7 @@ use serde_json::Value;
 use crate::files::json::path::Step;
 use crate::files::json::tree::{Json, Tree};
 use crate::files::npz::{self, NpzError, NpzWriter};
-use crate::files::solution::record::{ArraysOf, File, Reason, Result};
+use crate::files::solution::record::{ArraysOf, Reason, Result, SolutionRecord};
 
 /// Names of arrays that end with a name of the scene.
 const OF_NAMES: [&str; 3] = ["voltages/", "loads/", "configuration/joints/"];
@@ -20,7 +20,7 @@ const OF_BODIES: &str = "configuration/bodies/";
 ///
 /// # Errors
 /// A name of the scene is too long for them.
-pub(super) fn taken(file: &mut File, name: &str) -> io::Result<Vec<u8>> {
+pub(super) fn taken(file: &mut SolutionRecord, name: &str) -> io::Result<Vec<u8>> {
     let mut arrays = NpzWriter::default();
     arrays.list("time", &mem::take(&mut file.time));
     for (name, values) in file.voltages.take().into_iter().flatten() {

@@ -16,7 +16,9 @@ mod read;
 mod record;
 mod write;
 
-pub(crate) use arrays::{complete, file_beside};
+pub(crate) use arrays::file_beside;
+pub(crate) use read::record;
 pub use read::{SolutionFile, read};
+pub(crate) use record::{Body, ConfigurationRecord};
 pub use record::{Reason, SolutionError};
 pub use write::{Written, written};

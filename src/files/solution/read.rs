@@ -7,12 +7,15 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::control::{Costates, EarlierSolution, Solution};
+use crate::files::json::document::Document;
+use crate::files::json::error::SceneError;
+use crate::files::json::scope::Scope;
 use crate::files::json::source::{NoBytes, check_json, of_file, unmarked};
 use crate::files::json::tree::Tree;
 use crate::files::solution::arrays::complete;
 use crate::files::solution::record::{
-    Body, ConfigurationRecord, File, METRE, Reason, Result, SECOND, SolutionError, StateRecord,
-    unit,
+    Body, ConfigurationRecord, METRE, Reason, Result, SECOND, SolutionError, SolutionRecord,
+    StateRecord, unit,
 };
 use crate::kinematics::Pose;
 use crate::math::Matrix;
@@ -47,8 +50,22 @@ pub fn read(path: &Path, model: &Model) -> Result<Solution, SolutionError> {
     })
 }
 
+/// The file as a document for messages, and what it says, with those arrays that are wanted.
+pub(crate) fn record(
+    path: &Path,
+    is_wanted: impl Fn(&str) -> bool,
+) -> Result<(Document, SolutionRecord), SceneError> {
+    let mut document = Document::read(path)?;
+    if let Err(reason) = complete(path, &mut document.tree, is_wanted) {
+        let place = Scope::of(&document).key("arrays");
+        return Err(place.wrong(reason.to_string(), "the file that was written with it"));
+    }
+    let record = document.parse()?;
+    Ok((document, record))
+}
+
 /// The file as it is written, with the arrays that stand in another one.
-fn read_file(path: &Path) -> Result<File> {
+fn read_file(path: &Path) -> Result<SolutionRecord> {
     let bytes = of_file(path).map_err(|error| match error {
         NoBytes::Unreadable(cause) => Reason::Unreadable(cause),
         NoBytes::TooLarge(found, expected) => Reason::TooLarge { found, expected },
@@ -115,7 +132,7 @@ fn check_times(times: &[f64]) -> Result<()> {
 }
 
 /// Coordinates by joint, one column for each joint of the scene that has a coordinate.
-fn joint_columns<'f>(file: &'f File, system: &System) -> Result<&'f Columns> {
+fn joint_columns<'f>(file: &'f SolutionRecord, system: &System) -> Result<&'f Columns> {
     let columns = match (&file.configuration, &file.joints) {
         (Some(configuration), _) => &configuration.joints,
         (None, Some(joints)) => joints,

@@ -14,26 +14,27 @@ pub(super) const METRE: f64 = 1e3;
 
 /// The file.
 #[derive(Debug, Default, Serialize, Deserialize)]
-pub(super) struct File {
+pub(crate) struct SolutionRecord {
     #[serde(default)]
     pub(super) scene: String,
     /// File that holds the arrays of a long motion.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) arrays: Option<ArraysOf>,
+    /// Instants in s.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub(super) time: Vec<f64>,
+    pub(crate) time: Vec<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) joints: Option<BTreeMap<String, Vec<f64>>>,
+    pub(crate) joints: Option<BTreeMap<String, Vec<f64>>>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) configuration: Option<ConfigurationRecord>,
+    pub(crate) configuration: Option<ConfigurationRecord>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) voltages: Option<BTreeMap<String, Vec<f64>>>,
+    pub(crate) voltages: Option<BTreeMap<String, Vec<f64>>>,
     /// Loads by interval, in N and N m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) loads: Option<BTreeMap<String, Vec<f64>>>,
+    pub(crate) loads: Option<BTreeMap<String, Vec<f64>>>,
     /// Voltages that hold the goal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) hold: Option<BTreeMap<String, f64>>,
+    pub(crate) hold: Option<BTreeMap<String, f64>>,
     /// Loads that hold the goal, where they are not those of the last interval, in N and N m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) hold_loads: Option<BTreeMap<String, f64>>,
@@ -44,9 +45,9 @@ pub(super) struct File {
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub(super) parameters: BTreeMap<String, f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) coordinates: Option<String>,
+    pub(crate) coordinates: Option<String>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(super) state: Option<StateRecord>,
+    pub(crate) state: Option<StateRecord>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) costates: Option<Multipliers>,
     /// Barrier parameter of a solve that has not come to its end.
@@ -64,32 +65,32 @@ pub(super) struct ArraysOf {
 }
 
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct ConfigurationRecord {
+pub(crate) struct ConfigurationRecord {
     #[serde(default)]
-    pub(super) bodies: BTreeMap<String, Body>,
-    pub(super) joints: BTreeMap<String, Vec<f64>>,
+    pub(crate) bodies: BTreeMap<String, Body>,
+    pub(crate) joints: BTreeMap<String, Vec<f64>>,
 }
 
 /// Centre (m) and directors d₁, d₂, d₃ of a body at each instant.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct Body {
-    pub(super) centre: Vec<[f64; 3]>,
-    pub(super) directors: Vec<[[f64; 3]; 3]>,
+pub(crate) struct Body {
+    pub(crate) centre: Vec<[f64; 3]>,
+    pub(crate) directors: Vec<[[f64; 3]; 3]>,
 }
 
 /// Times in ms, coordinates and multipliers by instant, and reference places of the nodes of each mesh.
 #[derive(Debug, Serialize, Deserialize)]
-pub(super) struct StateRecord {
+pub(crate) struct StateRecord {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub(super) times_ms: Vec<f64>,
     pub(super) multiplier_time_ms: f64,
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) z: Vec<Vec<f64>>,
+    pub(crate) z: Vec<Vec<f64>>,
     /// Momentum of each coordinate at the end.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub(super) momentum: Vec<f64>,
+    pub(crate) momentum: Vec<f64>,
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
-    pub(super) meshes_mm: BTreeMap<String, Vec<[f64; 3]>>,
+    pub(crate) meshes_mm: BTreeMap<String, Vec<[f64; 3]>>,
 }
 
 #[derive(Debug, Serialize, Deserialize)]

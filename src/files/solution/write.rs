@@ -7,7 +7,7 @@ use crate::control::Solution;
 use crate::files::lay_out;
 use crate::files::solution::arrays;
 use crate::files::solution::record::{
-    Body, ConfigurationRecord, File, METRE, Multipliers, SECOND, StateRecord, unit,
+    Body, ConfigurationRecord, METRE, Multipliers, SECOND, SolutionRecord, StateRecord, unit,
 };
 use crate::model::Model;
 
@@ -64,7 +64,7 @@ fn hold_loads(model: &Model, solved: &Solution) -> Option<BTreeMap<String, f64>>
 }
 
 /// Returns the record that is written.
-fn record(model: &Model, solved: &Solution) -> File {
+fn record(model: &Model, solved: &Solution) -> SolutionRecord {
     let system = &model.system;
     let columns = |j: usize, unit: f64| solved.joints.iter().map(|row| row[j] / unit).collect();
     let joints = system.joints.iter().enumerate();
@@ -89,7 +89,7 @@ fn record(model: &Model, solved: &Solution) -> File {
     let is_load = |s: &&usize| sources[**s].is_load();
     let driven = || model.reached.iter().filter(|s| !is_load(s));
     let loads: BTreeMap<_, _> = model.reached.iter().filter(is_load).map(column).collect();
-    File {
+    SolutionRecord {
         arrays: None,
         scene: system.name.clone(),
         time: solved.times.iter().map(|t| t / SECOND).collect(),

@@ -7,17 +7,16 @@ use crate::files::problem::quantities::entry::{
     Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, costs, limits, limits_of,
     square,
 };
-use crate::files::problem::voltages::{SOLUTION_PATH, solution_document};
+use crate::files::problem::voltages::SOLUTION_PATH;
 use crate::files::scene::point::unit_axis;
 use crate::files::signal::{SignalSpec, signal};
+use crate::files::solution::record;
 use crate::files::units::quantity::{
     Force, JointCoordinate, JointRate, Kind, PhysicalQuantity, Quantity as Written, Torque,
 };
 use crate::math::{Signal, Vector};
 use crate::model::system::System;
 use crate::model::{Quantity, Reaction, What};
-use serde::Deserialize;
-use std::collections::BTreeMap;
 use std::path::Path;
 
 limits! {
@@ -199,31 +198,11 @@ pub(super) fn written_direction(direction: Option<[f64; 3]>, place: &Scope<'_>) 
     unit_axis(&direction, place)
 }
 
-/// Entries that are read of a solution: coordinates in rad or m by joint, one per instant.
-#[derive(Debug, Deserialize)]
-struct SolutionRecord {
-    /// Instants in s.
-    time: Vec<f64>,
-    #[serde(default)]
-    joints: Option<Coordinates>,
-    #[serde(default)]
-    configuration: Option<Configuration>,
-}
-
-type Coordinates = BTreeMap<String, Vec<f64>>;
-
-#[derive(Debug, Deserialize)]
-struct Configuration {
-    joints: Coordinates,
-}
-
 /// The coordinate of each joint of a solution by index, linear between its instants.
 pub(crate) fn read_solution_joints(path: &Path, system: &System) -> Result<Vec<(usize, Signal)>> {
-    let document = &solution_document(path, |name| {
-        name == "time" || name.starts_with("configuration/joints/")
-    })?;
-    let solution: SolutionRecord = document.parse()?;
-    let at = At::new(&Scope::of(document), system);
+    let is_wanted = |name: &str| name == "time" || name.starts_with("configuration/joints/");
+    let (document, solution) = record(path, is_wanted)?;
+    let at = At::new(&Scope::of(&document), system);
     let place = at.key("time");
     let times: Vec<f64> = solution.time.iter().map(|time| 1e3 * time).collect();
     refuse!(if times.is_empty(), place; found "no instant", expected "one or more");
