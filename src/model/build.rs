@@ -22,12 +22,11 @@ use crate::model::quantities::measures::Measures;
 use crate::model::quantities::quantity::Quantity;
 use crate::model::system::joints::{JointReading, triad};
 use crate::model::system::{
-    Attachment, Body, Discretisation, Electrode, Fidelity, Glue, Marker, Muscle, Potential, Solid,
-    Source, System,
+    Body, Discretisation, Electrode, Fidelity, Glue, Muscle, Potential, Solid, Source, System,
 };
 use crate::model::term_order::{rank, settle};
 use crate::model::terms::GRAVITY;
-use crate::model::terms::constraints::{Constraints, GLUE};
+use crate::model::terms::constraints::Constraints;
 use crate::model::terms::field_extent;
 use crate::model::terms::joint_forces;
 use crate::model::terms::loads;
@@ -81,9 +80,8 @@ impl Model {
         let rest = &presolved.system;
         let coordinates = Self::choose(rest, analysis.coordinates)?;
         let (graph, reference) = (Graph::new(rest), poses(rest));
-        let sources = system.sources();
         let mut vectors = Vectors::default();
-        let mut variables = interval_variables(&inputs, &sources, &analysis);
+        let mut variables = interval_variables(&inputs, &system, &analysis);
         let blocks = Solids::new(
             solids,
             &system,
@@ -98,9 +96,6 @@ impl Model {
         let size = length(rest, &blocks.nodes);
         let loops = Loops::new(coordinates, rest, &graph, &reference, size)?;
         let spans = spans(&system, &presolved, &reference, &mut vectors);
-        let sought = sought(
-            &analysis, &system, &presolved, &graph, &reference, &variables,
-        );
         let construction = Construction {
             system: &system,
             presolved: &presolved,
@@ -113,17 +108,16 @@ impl Model {
             graph: &graph,
             variables: &variables,
             spans: &spans,
-            sought,
+            sought: sought(
+                &analysis, &system, &presolved, &graph, &reference, &variables,
+            ),
         };
         let (intervals, made) = construction.sums(&mut vectors);
-        let markers = construction.markers(&mut vectors);
-        let is_glued = made.present.iter().any(|one| one.term == GLUE);
-        let measures = Measures::new(&construction, &markers, &intervals, is_glued, &mut vectors);
+        let measures = Measures::new(&construction, &intervals, &made.present, &mut vectors);
         let list = vectors.list();
-        let map = construction.coordinate_map(list, made.multipliers.len());
-        let scalars = variables.of(Time::Interval).len();
+        let (count, scalars) = (made.multipliers.len(), variables.of(Time::Interval).len());
+        let map = construction.coordinate_map(list, count);
         let intervals = Functional::new(intervals, measures.intervals, list.len(), scalars);
-        let count = made.multipliers.len();
         let instants = Functional::new(made.terms, measures.instants, list.len(), count);
         let unknowns = construction.unknowns(&map, made.multipliers);
         unknowns.into_iter().for_each(|one| _ = variables.add(one));
@@ -133,16 +127,15 @@ impl Model {
             vectors: list.to_vec(),
             variables,
             reached,
-            sources,
+            sources: system.sources(),
             solids: blocks.list,
             electrode_circuits: blocks.circuits,
             nodes: blocks.nodes,
             node_names: blocks.names,
             prescribed: prescribed::prescribed(&system, &presolved, &internals),
-            internals: internals.list,
-            of_elements: internals.of_elements,
+            internals,
             spans,
-            markers,
+            markers: measures.markers,
             measured: measures.places,
             joint_readings: Self::joint_readings(&system, &presolved),
             multiplier_time: analysis.interval,
@@ -274,19 +267,6 @@ impl Construction<'_> {
         (terms, constraints)
     }
 
-    /// Vector of each marker.
-    fn markers(&self, vectors: &mut Vectors) -> Vec<usize> {
-        let mut vector = |marker: &Marker| match marker.solid {
-            Some(solid) => self.blocks.list[solid].nearest(&marker.point.at),
-            None => {
-                let Attachment { body, at } = &marker.point;
-                vectors.index(MaterialVector::point(*body, at, self.reference))
-            }
-        };
-        let markers = self.presolved.system.markers.iter();
-        markers.map(&mut vector).collect()
-    }
-
     /// The map from coordinates to material vectors.
     fn coordinate_map(&self, vectors: &[MaterialVector], multipliers: usize) -> CoordinateMap {
         let (rest, nodes) = (&self.presolved.system, &self.blocks.nodes);
@@ -315,10 +295,10 @@ impl Construction<'_> {
 /// Voltages, loads and parameters, the first scalars of an interval.
 pub(super) fn interval_variables(
     inputs: &[usize],
-    sources: &[Source],
+    system: &System,
     analysis: &Analysis,
 ) -> Variables {
-    let mut variables = Variables::default();
+    let (mut variables, sources) = (Variables::default(), system.sources());
     for &source in inputs {
         let Source { name, kind, .. } = &sources[source];
         variables.add(Variable::input(source, *kind, name.clone()));

@@ -6,7 +6,7 @@ use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm};
 use crate::math::Vector;
 use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::constants::constant::Parameter;
-use crate::model::layout::internal::{Internal, InternalKind};
+use crate::model::layout::internal::{InternalKind, Internals};
 use crate::model::layout::solid_block::SolidBlock;
 use crate::model::layout::variables::{Size, Variable, Variables};
 use crate::model::presolve::graph::Graph;
@@ -18,7 +18,6 @@ use crate::model::system::joints::{JointReading, Prescribed};
 use crate::model::system::{Body, InputKind, Source, System};
 use crate::model::terms::{LeftOut, Present};
 use crate::sparse::Symmetry;
-use std::collections::BTreeMap;
 
 /// A system with its coordinates, vectors and terms: constant during a run.
 #[derive(Debug)]
@@ -69,9 +68,7 @@ pub struct Model {
     /// Block and node of the mesh of each node with coordinates.
     pub node_names: Vec<(usize, usize)>,
     /// Internal coordinates.
-    pub(super) internals: Vec<Internal>,
-    /// First of the internal coordinates of each block and element with Maxwell branches.
-    pub(super) of_elements: BTreeMap<(usize, usize), usize>,
+    pub(super) internals: Internals,
 }
 
 impl Model {
@@ -129,14 +126,14 @@ impl Model {
 
     /// Internal coordinates with their meaning.
     pub(super) fn internal_kinds(&self) -> impl Iterator<Item = (usize, InternalKind)> + '_ {
-        let kinds = self.internals.iter().map(|own| own.kind);
+        let kinds = self.internals.list.iter().map(|own| own.kind);
         self.action.map.internal().zip(kinds)
     }
 
     /// Meaning of coordinate `i`, where it is an internal one.
     pub(super) fn internal_kind(&self, i: usize) -> Option<InternalKind> {
         let index = i.checked_sub(self.action.map.internal().start)?;
-        Some(self.internals.get(index)?.kind)
+        Some(self.internals.list.get(index)?.kind)
     }
 
     /// Internal coordinates of some meaning, each with what is read of it.

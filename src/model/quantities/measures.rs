@@ -18,8 +18,10 @@ use crate::model::construction::Construction;
 use crate::model::layout::variables::Role;
 use crate::model::quantities::quantity::Quantity;
 use crate::model::quantities::what::{At, FieldPlace, Of, Pulling, Region, What};
-use crate::model::system::Amount;
 use crate::model::system::joints::{JointCoordinate, JointReading};
+use crate::model::system::{Amount, Attachment, Marker};
+use crate::model::terms::Present;
+use crate::model::terms::constraints::GLUE;
 use nalgebra::SVector;
 use std::sync::Arc;
 
@@ -33,19 +35,32 @@ pub(crate) struct Measures {
     pub(crate) intervals: Vec<Box<dyn Measure>>,
     /// Index of each quantity among those of its site; `None` where nothing of the model can change it.
     pub(crate) places: Vec<Option<usize>>,
+    /// Vector of each marker.
+    pub(crate) markers: Vec<usize>,
 }
 
 impl Measures {
-    /// The measures of the quantities of an analysis, with the vector of each marker, the terms of the intervals, and true where constraints
-    /// glue blocks to bodies.
+    /// The measures of the quantities of an analysis, from the terms of the intervals and what is present.
     pub(crate) fn new(
         known: &Construction<'_>,
-        markers: &[usize],
         terms: &[Arc<dyn Term>],
-        is_glued: bool,
+        present: &[Present],
         vectors: &mut Vectors,
     ) -> Self {
-        let (mut out, analysis) = (Self::default(), known.analysis);
+        let mut marker = |marker: &Marker| match marker.solid {
+            Some(solid) => known.blocks.list[solid].nearest(&marker.point.at),
+            None => {
+                let Attachment { body, at } = &marker.point;
+                vectors.index(MaterialVector::point(*body, at, known.reference))
+            }
+        };
+        let markers = known.presolved.system.markers.iter();
+        let mut out = Self {
+            markers: markers.map(&mut marker).collect(),
+            ..Self::default()
+        };
+        let is_glued = present.iter().any(|one| one.term == GLUE);
+        let analysis = known.analysis;
         for (index, quantity) in analysis.quantities.iter().enumerate() {
             let list = match quantity.is_of_intervals() {
                 true => &mut out.intervals,
@@ -53,7 +68,7 @@ impl Measures {
             };
             let mut reading = Reading {
                 known,
-                markers,
+                markers: &out.markers,
                 terms,
                 is_glued,
                 quantity,

@@ -313,7 +313,7 @@ impl Model {
         let of = &self.solids[block];
         let branches = of.material(element).maxwell.list();
         let x = of.nodes(element).map(|v| at.x[v]);
-        if let Some(first) = self.of_elements.get(&(block, element)) {
+        if let Some(first) = self.internals.of_elements.get(&(block, element)) {
             let first = self.action.map.internal().start + first;
             let stress = |(branch, shear_modulus): (usize, f64)| {
                 let mut strains = ViscousStrains::default();
