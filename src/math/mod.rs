@@ -2,7 +2,6 @@
 //! of them, two computations at once, when to stop them, and the memory that is there for them.
 
 mod derivatives;
-mod digits;
 mod fault;
 mod jet;
 pub(crate) mod join;
@@ -12,9 +11,10 @@ mod signal;
 
 pub use derivatives::largest_eigenvalue_bound;
 pub use derivatives::{Derivatives, Gradient, Local};
-pub use digits::{no_smaller, shortest, significant};
 pub(crate) use fault::refuse;
-pub use fault::{DIRECTION, Fault, Key, WHOLE, not_negative, positive, unique};
+pub use fault::{
+    DIRECTION, Fault, Key, WHOLE, no_smaller, not_negative, positive, shortest, significant, unique,
+};
 pub use jet::Jet;
 pub use join::cores;
 pub(crate) use join::has_pool;

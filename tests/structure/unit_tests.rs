@@ -1,4 +1,4 @@
-//! Tests that stand in files of `src` run in `tests/units`, as the library is built without them.
+//! Tests of what files of `src` do not show stand in `tests/units`, and run there, as the library is built without them.
 
 use crate::sources::sources;
 

@@ -1,5 +1,5 @@
-//! Units that the library does not show. Their files are compiled here once more, with the tests that stand in them; a library with
-//! tests of its own would be compiled twice as a whole.
+//! Units that the library does not show. Their files are compiled here once more, with their tests, which stand in the folders beside this
+//! file; a library with tests of its own would be compiled twice as a whole.
 #![allow(
     dead_code,
     unreachable_pub,
