@@ -53,8 +53,8 @@ pub struct CoordinateMap {
     pub multipliers: usize,
     /// Dependence of each vector.
     pub vectors: Vec<Dependence>,
-    /// The tree, for joint coordinates.
-    pub tree: Option<Tree>,
+    /// The tree of joint coordinates; without links where there are none.
+    pub tree: Tree,
     /// Number of coordinates of the bodies.
     pub of_bodies: usize,
     /// Node and axis of each coordinate of the nodes.
@@ -89,13 +89,7 @@ impl CoordinateMap {
         };
         let of_bodies = tree.coordinates();
         let vectors = vectors.iter().zip(tree.packed()).map(dependence).collect();
-        Self::new(
-            vectors,
-            Some(tree),
-            of_bodies,
-            nodes,
-            [internal, multipliers],
-        )
+        Self::new(vectors, tree, of_bodies, nodes, [internal, multipliers])
     }
 
     /// Director coordinates of `bodies` bodies, and coordinates of nodes.
@@ -107,13 +101,15 @@ impl CoordinateMap {
         multipliers: usize,
     ) -> Self {
         let parts = parts_of_nodes(12 * bodies, nodes);
-        let vectors = vectors.iter().map(|v| linear(v, nodes, &parts)).collect();
-        Self::new(vectors, None, 12 * bodies, nodes, [internal, multipliers])
+        let vectors: Vec<_> = vectors.iter().map(|v| linear(v, nodes, &parts)).collect();
+        let still = vec![MaterialVector::default(); vectors.len()];
+        let tree = Tree::new(Vec::new(), 0, &still);
+        Self::new(vectors, tree, 12 * bodies, nodes, [internal, multipliers])
     }
 
     fn new(
         vectors: Vec<Dependence>,
-        tree: Option<Tree>,
+        tree: Tree,
         of_bodies: usize,
         nodes: &[NodePlace],
         [of_internal, multipliers]: [usize; 2],
@@ -151,7 +147,7 @@ impl CoordinateMap {
     /// Storage for an instant.
     pub fn instant(&self) -> Configuration {
         let zeros = || vec![Vector::zeros(); self.vectors.len()];
-        let columns = vec![0.0; self.tree.as_ref().map_or(0, Tree::size)];
+        let columns = vec![0.0; self.tree.size()];
         let mut z = vec![0.0; self.unknowns()];
         for _ in 0..self.charts() {
             z.extend([1.0, 0.0, 0.0, 0.0]);
@@ -165,7 +161,7 @@ impl CoordinateMap {
             columns_l: columns,
             forces: zeros(),
             contracted: zeros(),
-            tree: self.tree.as_ref().map(Tree::state).unwrap_or_default(),
+            tree: self.tree.state(),
         }
     }
 
@@ -176,7 +172,12 @@ impl CoordinateMap {
 
     /// Number of charts, whose quaternions follow the unknowns in the list of an instant.
     pub(super) fn charts(&self) -> usize {
-        self.tree.as_ref().map_or(0, Tree::charts)
+        self.tree.charts()
+    }
+
+    /// Returns true if bodies have joint coordinates, and no directors.
+    pub fn is_articulated(&self) -> bool {
+        self.of_bodies == self.tree.coordinates()
     }
 
     /// An instant placed at coordinates, and multipliers and charts where they are given.
@@ -198,11 +199,9 @@ impl CoordinateMap {
         let Configuration {
             z, x, tree: state, ..
         } = instant;
-        if let Some(tree) = &self.tree {
-            let (unknowns, charts) = z.split_at(self.unknowns());
-            tree.place(unknowns, charts, state);
-            tree.vectors(state, x);
-        }
+        let (unknowns, charts) = z.split_at(self.unknowns());
+        self.tree.place(unknowns, charts, state);
+        self.tree.vectors(state, x);
         for &v in &self.linear {
             x[v] = self.sum_of_parts(v, z, true);
         }
@@ -210,9 +209,7 @@ impl CoordinateMap {
 
     /// The columns of P, once the vectors are known; linear vectors need none.
     pub fn tangent(&self, instant: &mut Configuration) {
-        if let Some(tree) = &self.tree {
-            tree.tangent(&mut instant.tree, &mut instant.columns);
-        }
+        self.tree.tangent(&mut instant.tree, &mut instant.columns);
     }
 
     fn sum_of_parts(&self, vector: usize, z: &[f64], constant: bool) -> Vector {
@@ -232,9 +229,7 @@ impl CoordinateMap {
 
     /// w = P l and, for a tree, the derivatives of the columns along l.
     pub fn along(&self, instant: &mut Configuration) {
-        if let Some(tree) = &self.tree {
-            tree.along(instant);
-        }
+        self.tree.along(instant);
         for &v in &self.linear {
             instant.w[v] = self.sum_of_parts(v, &instant.l, false);
         }
@@ -242,9 +237,8 @@ impl CoordinateMap {
 
     /// Adds Pᵀ R of the forces on an instant to the rows of the coordinates; needs no columns.
     pub fn rows(&self, instant: &mut Configuration, rows: &mut [f64]) {
-        if let Some(tree) = &self.tree {
-            tree.pull_back(&mut instant.tree, &instant.forces, rows);
-        }
+        self.tree
+            .pull_back(&mut instant.tree, &instant.forces, rows);
         for &v in &self.linear {
             self.pull_back_one(v, &[], &instant.forces[v], rows);
         }
@@ -327,8 +321,8 @@ impl CoordinateMap {
 
     /// Poses of the bodies at an instant.
     pub fn poses(&self, instant: &Configuration, bodies: usize) -> Vec<Pose> {
-        if self.tree.is_some() {
-            return instant.tree.poses[..bodies].to_vec();
+        if let Some(poses) = instant.tree.poses.get(..bodies) {
+            return poses.to_vec();
         }
         let pose = |body: usize| {
             let q = &instant.z[body_offset(body)..];
@@ -342,8 +336,8 @@ impl CoordinateMap {
 
     /// Directors of a body at a placed instant.
     pub fn directors(&self, instant: &Configuration, body: usize) -> Matrix {
-        match self.tree {
-            Some(_) => instant.tree.poses[body].directors,
+        match instant.tree.poses.get(body) {
+            Some(pose) => pose.directors,
             None => Matrix::from_column_slice(&instant.z[body_offset(body) + 3..][..9]),
         }
     }
@@ -409,24 +403,14 @@ fn linear(vector: &MaterialVector, nodes: &[NodePlace], of_node: &[Vec<LinearPar
 }
 
 impl CoordinateMap {
-    /// Coordinates that turn behind a chart.
-    pub fn charted(&self) -> Vec<[usize; 3]> {
-        self.tree.as_ref().map_or_else(Vec::new, Tree::charted)
-    }
-
-    /// Handedness of the axes of the turns behind each chart: 1 or −1.
-    pub fn handedness(&self) -> Vec<f64> {
-        self.tree.as_ref().map_or_else(Vec::new, Tree::handedness)
-    }
-
     /// Moves the charts of a placed instant to where its bodies are: nothing moves, and the coordinates that turn behind a
     /// chart become zero. Returns true if there are charts.
     pub fn recentre(&self, instant: &mut Configuration) -> bool {
-        let Some(tree) = self.tree.as_ref().filter(|tree| tree.charts() > 0) else {
+        if self.charts() == 0 {
             return false;
-        };
+        }
         let (unknowns, charts) = instant.z.split_at_mut(self.unknowns());
-        tree.recentre(unknowns, charts);
+        self.tree.recentre(unknowns, charts);
         self.place(instant);
         true
     }
@@ -437,9 +421,7 @@ impl CoordinateMap {
         for (difference, (from, to)) in differences.iter_mut().zip(from.iter().zip(to)) {
             *difference = to - from;
         }
-        if let Some(tree) = &self.tree {
-            tree.rotations_between([from, to], differences);
-        }
+        self.tree.rotations_between([from, to], differences);
     }
 
     /// Moves unknowns by a step along a direction, where the turns behind charts are zero: they stay zero, and the charts turn about the
@@ -448,14 +430,7 @@ impl CoordinateMap {
         for (value, change) in unknowns.iter_mut().zip(direction) {
             *value += step * change;
         }
-        if let Some(tree) = &self.tree {
-            tree.turn_charts(unknowns, charts);
-        }
-    }
-
-    /// Place of the link that carries a body in the list of a tree, in which parents come first.
-    pub fn place_in_tree(&self, body: usize) -> Option<usize> {
-        self.tree.as_ref().map(|tree| tree.carrier(body))
+        self.tree.turn_charts(unknowns, charts);
     }
 
     /// Gives a body on a joint with a chart, with turns of zero, a velocity of its centre and an angular velocity by the rates of this joint,
@@ -466,8 +441,10 @@ impl CoordinateMap {
         twist: [Vector; 2],
         instant: &mut Configuration,
     ) -> bool {
-        let Some(tree) = &self.tree else { return false };
-        let is_set = tree.set_in_motion(body, twist, &instant.tree, &mut instant.l);
+        if !self.is_articulated() {
+            return false;
+        }
+        let is_set = (self.tree).set_in_motion(body, twist, &instant.tree, &mut instant.l);
         self.along(instant);
         is_set
     }
@@ -482,42 +459,31 @@ impl CoordinateMap {
 
     /// Takes over the charts of another list of coordinates, multipliers and charts: the configuration stays.
     pub fn take_charts(&self, other: &[f64], z: &mut [f64]) {
-        let unknowns = self.unknowns();
-        if let Some(tree) = &self.tree {
-            let (u, charts) = z.split_at_mut(unknowns);
-            tree.take_charts(&other[unknowns..], u, charts);
+        if self.charts() > 0 {
+            let (u, charts) = z.split_at_mut(self.unknowns());
+            self.tree.take_charts(&other[self.unknowns()..], u, charts);
         }
-    }
-
-    /// Greatest angle in rad between a chart and the rotation of its joint.
-    pub fn angle_from_charts(&self, z: &[f64]) -> f64 {
-        self.tree
-            .as_ref()
-            .map_or(0.0, |tree| tree.angle_from_charts(z))
     }
 
     /// Lets the joints with a chart follow given poses of the bodies: their charts and slides, the turns behind them zero.
     pub fn follow(&self, poses: &[Pose], instant: &mut Configuration) {
-        let unknowns = self.unknowns();
-        if let Some(tree) = &self.tree {
-            let (u, charts) = instant.z.split_at_mut(unknowns);
-            tree.follow(poses, u, charts);
-        }
+        let (u, charts) = instant.z.split_at_mut(self.unknowns());
+        self.tree.follow(poses, u, charts);
         self.place(instant);
     }
 
     /// Puts the charts of a list of coordinates, multipliers and charts at the mean of others, by weights whose sum is one; the
     /// coordinates that turn behind them become zero, others stay.
     pub fn mean_of_charts(&self, parts: &[(f64, &[f64])], z: &mut [f64]) {
-        let Some(tree) = self.tree.as_ref().filter(|tree| tree.charts() > 0) else {
+        if self.charts() == 0 {
             return;
-        };
+        }
         let split = parts.iter().map(|&(weight, z)| {
             let (unknowns, charts) = z.split_at(self.unknowns());
             (weight, [unknowns, charts])
         });
         let parts: Vec<_> = split.collect();
         let (unknowns, charts) = z.split_at_mut(self.unknowns());
-        tree.mean(&parts, unknowns, charts);
+        self.tree.mean(&parts, unknowns, charts);
     }
 }

@@ -265,12 +265,10 @@ impl Reduced {
         let (ends, local) = ([&*instant; 2], &mut scratch.local);
         let to = &mut Pulled::new(ends, BlockMask::HERE, target, local, values);
         laid.instants.add(order, &scratch.instant, to);
-        if let Some(tree) = &self.map.tree {
-            let values = &mut values[same..];
-            match order {
-                Order::Third => tree.curvature_along(instant, &laid.curvature, values),
-                _ => tree.curvature(instant, &laid.curvature, values),
-            }
+        let (tree, values) = (&self.map.tree, &mut values[same..]);
+        match order {
+            Order::Third => tree.curvature_along(instant, &laid.curvature, values),
+            _ => tree.curvature(instant, &laid.curvature, values),
         }
     }
 
@@ -342,7 +340,7 @@ impl Laid {
             |sum: &Functional, site| PullBack::new(sum.couplings(), map, &mut layout, site);
         let intervals = plan(intervals, Site::Intervals);
         let instants = plan(instants, Site::Instants);
-        let entries = map.tree.iter().flat_map(|tree| tree.curvature_entries());
+        let entries = map.tree.curvature_entries();
         let curvature = entries
             .map(|(i, k)| [layout.same.slot(i, k), layout.same.slot(k, i)])
             .collect();

@@ -150,7 +150,7 @@ pub(super) fn turned(
     end: &Configuration,
 ) -> Option<(String, f64)> {
     let map = &model.action.map;
-    let of_joints = map.tree.as_ref().map_or(0, |tree| tree.coordinates());
+    let of_joints = map.tree.coordinates();
     let turns = |&i: &usize| {
         let turn = (end.z[i] - start.z[i]).abs();
         (turn > PI || turn.is_nan()) && !model.is_length(i)

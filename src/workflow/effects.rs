@@ -426,6 +426,6 @@ fn add<T: Copy + Ord>(list: &mut Vec<T>, item: T) {
 fn axis(map: &CoordinateMap, i: usize) -> Option<usize> {
     match i.checked_sub(map.of_bodies) {
         Some(of_node) => map.of_nodes.get(of_node).map(|&(_, axis)| axis),
-        None => map.tree.is_none().then_some(i % 3),
+        None => (!map.is_articulated()).then_some(i % 3),
     }
 }

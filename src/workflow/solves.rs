@@ -194,7 +194,7 @@ const FAR: f64 = std::f64::consts::FRAC_PI_3;
 /// The motion with charts where its bodies are, where it ends far from those that it has.
 pub(crate) fn recentred(model: &Model, discrete: &DiscreteTrajectory) -> Option<InitialGuess> {
     let map = &model.action.map;
-    let is_far = |z: &Vec<f64>| map.angle_from_charts(z) > FAR;
+    let is_far = |z: &Vec<f64>| map.tree.angle_from_charts(z) > FAR;
     discrete.z.iter().any(is_far).then(|| {
         let z = discrete.z.iter().map(|z| {
             let mut instant = map.placed(z);

@@ -71,7 +71,7 @@ fn nothing_moves_when_charts_follow() {
         let before = placed(&model, &z);
         let mut after = before.clone();
         assert!(model.action.map.recentre(&mut after));
-        let charted = model.action.map.charted();
+        let charted = model.action.map.tree.charted();
         assert!(
             charted
                 .iter()
@@ -176,7 +176,7 @@ fn charts_are_exchanged_and_the_configuration_stays() {
             taken[model.coordinate_count()..],
             other[model.coordinate_count()..]
         );
-        assert!(map.angle_from_charts(&taken) > 1.0);
+        assert!(map.tree.angle_from_charts(&taken) > 1.0);
         let (a, b) = (placed(&model, &z), placed(&model, &taken));
         for (a, b) in a.x.iter().zip(&b.x) {
             assert!((a - b).amax() < 1e-12 * 300.0);

@@ -132,7 +132,7 @@ impl Tree {
     }
 
     /// Greatest angle in rad between a chart and the rotation of its joint.
-    pub(in crate::coordinates) fn angle_from_charts(&self, u: &[f64]) -> f64 {
+    pub fn angle_from_charts(&self, u: &[f64]) -> f64 {
         let none = [1.0, 0.0, 0.0, 0.0];
         self.turns()
             .map(|links| turned(links, u, &none).angle())

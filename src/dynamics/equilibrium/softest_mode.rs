@@ -37,7 +37,7 @@ const ROUNDING: f64 = 1e-9;
 /// Returns true if the stiffness in joint coordinates is small enough for a full eigenvalue decomposition.
 fn is_small(model: &Model) -> bool {
     let map = &model.action.map;
-    let joints_alone = map.tree.is_some() && map.of_nodes.is_empty() && map.of_internal == 0;
+    let joints_alone = map.is_articulated() && map.of_nodes.is_empty() && map.of_internal == 0;
     map.multipliers == 0 && joints_alone && (1..=EIGENVALUES).contains(&map.unknowns())
 }
 

@@ -25,7 +25,7 @@ pub(super) fn turned_pairs(&[a, b, c]: &[usize; 3]) -> [[usize; 3]; 3] {
 /// First places of the curvature of charts in the values, three a chart, and of the added stiffness.
 pub(super) fn places(model: &Model) -> [usize; 2] {
     let curved = model.action.layout().values(1);
-    [curved, curved + 3 * model.action.map.charted().len()]
+    [curved, curved + 3 * model.action.map.tree.charted().len()]
 }
 
 /// Entries of the tangent, and its symmetry.
@@ -45,7 +45,7 @@ fn entries(model: &Model) -> (EntryList, Symmetry) {
     }
     entries.add_scalars(model, &[[0, 0], [1, 1]]);
     let [curved, added] = places(model);
-    for (place, [i, j, _]) in map.charted().iter().flat_map(turned_pairs).enumerate() {
+    for (place, [i, j, _]) in map.tree.charted().iter().flat_map(turned_pairs).enumerate() {
         for entry in [(i, j), (j, i)] {
             let same = layout.same.find(entry.0, entry.1);
             let same = same.expect("the turns of a joint are coupled");

@@ -128,8 +128,8 @@ impl<'m> Statics<'m> {
             sigma: 0.0,
             residual: vec![0.0; size],
             scales: model.sizes(),
-            charted: map.charted(),
-            handedness: map.handedness(),
+            charted: map.tree.charted(),
+            handedness: map.tree.handedness(),
             curved: 0,
             iterations: 0,
         };

@@ -313,7 +313,7 @@ impl GalerkinEquations<'_> {
         let Some((_, end)) = self.trail.last().cloned() else {
             return;
         };
-        for turn in self.model.action.map.charted().into_iter().flatten() {
+        for turn in self.model.action.map.tree.charted().into_iter().flatten() {
             for (_, u) in &mut self.trail {
                 u[turn] -= end[turn];
             }

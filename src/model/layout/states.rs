@@ -87,7 +87,7 @@ impl Model {
         named.sort_by_key(|&(&body, _)| {
             self.presolved
                 .carrier(Some(body))
-                .map(|b| motion.place_in_tree(b))
+                .map(|b| motion.tree.carrier(b))
         });
         for (&body, &[velocity, spin]) in named {
             let poses = motion.poses(&instant, self.reference.len());
@@ -114,19 +114,17 @@ impl Model {
         }
         let poses = self.presolved.condense(poses, &self.reference);
         let map = &self.action.map;
-        match &map.tree {
-            None => self.coordinates_of(&poses, joints),
-            Some(_) => {
-                let mut instant = map.placed(&z);
-                map.follow(&poses, &mut instant);
-                for (first, values) in self.several(&poses) {
-                    instant.z[first..first + values.len()].copy_from_slice(&values);
-                }
-                map.place(&mut instant);
-                self.place_internals(&mut instant.z, joints);
-                instant.z
-            }
+        if !map.is_articulated() {
+            return self.coordinates_of(&poses, joints);
         }
+        let mut instant = map.placed(&z);
+        map.follow(&poses, &mut instant);
+        for (first, values) in self.several(&poses) {
+            instant.z[first..first + values.len()].copy_from_slice(&values);
+        }
+        map.place(&mut instant);
+        self.place_internals(&mut instant.z, joints);
+        instant.z
     }
 }
 
