@@ -145,12 +145,17 @@ impl ElasticLaw {
     /// # Errors
     /// The first one without a meaning.
     pub fn check(&self) -> Result<(), Fault> {
+        let checked = self.check_constants();
+        checked.map_err(|fault| fault.under(self.name()))
+    }
+
+    fn check_constants(&self) -> Result<(), Fault> {
         let part = |share: f64| {
             refuse!(unless (0.0..=1.0).contains(&share), Key("share");
                 value share, expected "a part of the shear modulus from 0 to 1");
             Ok(())
         };
-        let checked = match *self {
+        match *self {
             Self::Gent { limit } => {
                 refuse!(unless limit > 0.0 && limit.is_finite(), Key("limit");
                     value limit, expected "a positive number, Jm of Gent's law");
@@ -171,8 +176,7 @@ impl ElasticLaw {
                     found format!("{exponents:?}"), expected "two numbers that are not zero");
                 part(share)
             }
-        };
-        checked.map_err(|fault| fault.under(self.name()))
+        }
     }
 
     /// The stretches between which a muscle has an energy, where not all have one: the positive zeros of Λ³ − (3 + Jₘ) Λ + 2.
