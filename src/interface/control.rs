@@ -2,20 +2,18 @@
 
 use crate::control;
 use crate::control::problem::{
-    Ahead, BoundaryState, Combined, Duration, Guess, MotionTask, OutcomeOf, QuantityCost,
-    Regulator, SoughtHold, Varied, Voltages,
+    Ahead, BoundaryState, Combined, CostFunction, Duration, During, EnergyCost, Guess, Limit,
+    MotionTask, OutcomeOf, QuantityCost, Regulator, SoughtHold, Varied, Voltages, Waypoint,
 };
 use crate::control::{Earlier, EarlierSolution, Motions, problem};
-use crate::interface::builder::builder;
-use crate::interface::cost_checks::{check_costs, check_energies, check_limits, check_waypoints};
 use crate::interface::error::{Entry, Result, source};
-use crate::interface::handle::{Handle, Input};
+use crate::interface::handle::{Handle, Input, builder};
 use crate::interface::motion::Optimum;
 use crate::interface::state::State;
 use crate::math::{Signal, refuse, shortest};
 use crate::model::components::Load;
-use crate::model::system::Source;
-use crate::model::{Parameter, System};
+use crate::model::system::{Joint, Muscle, Source};
+use crate::model::{Parameter, System, What};
 use crate::nlp::Nlp;
 use crate::tasks;
 use crate::tasks::SolveRequest;
@@ -325,4 +323,78 @@ impl<'a> Together<'a> {
         let found = tasks::solve_motions(&motions, SolveRequest::default(), go_on)?;
         Ok(found.list.into_iter().map(Optimum::from_result).collect())
     }
+}
+
+/// Refuses costs of parts that the system does not have, and weights and functions of time that are not finite.
+fn check_costs(costs: &[QuantityCost], is_periodic: bool, system: &System) -> Result<()> {
+    for cost in costs {
+        let quantity = &cost.quantity;
+        let is_behind = |source: usize| {
+            let muscle = system.muscles.get(source);
+            muscle.is_some_and(Muscle::is_behind_resistor)
+        };
+        // An impulse is bounded, not squared.
+        let is_rate = !quantity.is_step() || quantity.rate_factor(system).is_some();
+        let is_single = quantity.before().is_none() && quantity.source().is_none_or(is_behind);
+        let exists = quantity.what.exists(system) && is_single && is_rate;
+        let is_followed = match &cost.function {
+            CostFunction::Square { reference } => reference.is_sound(),
+            CostFunction::Itself => true,
+        };
+        let is_timed = match cost.during {
+            During::At(part) => is_on_the_way(part, is_periodic),
+            During::Motion | During::End => true,
+        };
+        let is_sound = cost.weight > 0.0 && cost.weight.is_finite() && is_followed && is_timed;
+        refuse!(unless exists && is_sound, Entry("cost");
+            found format!("{cost:?}"),
+            expected "a positive weight of a marker, of a joint with one coordinate, or of a quantity of a lumped muscle (of its source behind a resistor), along finite values or at a part of the duration above 0 and below 1");
+    }
+    Ok(())
+}
+
+/// Refuses energies of parts that are no lumped muscles, and weights that are not positive.
+fn check_energies(costs: &[EnergyCost], system: &System) -> Result<()> {
+    for cost in costs {
+        let is_sound = cost.weight > 0.0 && cost.weight.is_finite();
+        refuse!(unless cost.exists(system) && is_sound, Entry("cost");
+            found format!("{cost:?}"), expected "a positive weight of a lumped muscle with a permittivity");
+    }
+    Ok(())
+}
+
+/// Refuses limits of parts that the system does not have, and those that leave nothing.
+fn check_limits(limits: &[Limit], system: &System) -> Result<()> {
+    for limit in limits {
+        let is_then = limit.part.is_none_or(|part| part > 0.0 && part <= 1.0);
+        let has_field = !matches!(limit.what, What::Field(_)) || limit.max > 0.0;
+        let leaves = limit.min <= limit.max && has_field;
+        refuse!(unless limit.what.exists(system) && leaves && is_then, Entry("limit");
+            found format!("{limit:?}"), expected "a range of a part of the system");
+    }
+    Ok(())
+}
+
+/// Refuses waypoints of parts that the system does not have, and those that are not on the way.
+fn check_waypoints(waypoints: &[Waypoint], is_periodic: bool, system: &System) -> Result<()> {
+    for waypoint in waypoints {
+        let of_joint = |(joint, value): (&usize, &f64)| {
+            let joint = system.joints.get(*joint);
+            joint.is_some_and(Joint::has_coordinate) && value.is_finite()
+        };
+        let mut given = waypoint.places.values().flat_map(|place| place.given());
+        let holds = is_on_the_way(waypoint.part, is_periodic)
+            && waypoint.places.keys().all(|&m| m < system.markers.len())
+            && given.all(|(_, value)| value.is_finite())
+            && waypoint.angles.iter().all(of_joint);
+        refuse!(unless holds, Entry("waypoint");
+            found format!("{waypoint:?}"),
+            expected "a finite place of a marker or joint at a part of the duration above 0 and below 1");
+    }
+    Ok(())
+}
+
+/// Returns true if a part of the duration lies on the way: the end of a periodic motion does.
+fn is_on_the_way(part: f64, is_periodic: bool) -> bool {
+    part > 0.0 && (part < 1.0 || (is_periodic && part == 1.0))
 }

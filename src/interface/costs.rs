@@ -5,10 +5,9 @@ use crate::control::problem;
 use crate::control::problem::{
     CostFunction, During, EnergyCost, Limit, Place, QuantityCost, SourceEnergy, Waypoint,
 };
-use crate::interface::builder::builder;
 use crate::interface::control::Control;
 use crate::interface::error::{Entry, Result};
-use crate::interface::handle::Handle;
+use crate::interface::handle::{Handle, builder};
 use crate::math::{Signal, Vector, refuse};
 use crate::model::system::{Joint, Marker, Muscle};
 use crate::model::{FieldPlace, Pulling, Quantity, Reaction, System, What};

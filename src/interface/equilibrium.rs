@@ -2,9 +2,8 @@
 
 use crate::control::problem::AtRest;
 use crate::dynamics::EnergyExchange;
-use crate::interface::builder::builder;
 use crate::interface::error::{Entry, Error, Result, source};
-use crate::interface::handle::{Handle, Input};
+use crate::interface::handle::{Handle, Input, builder};
 use crate::interface::motion::Motion;
 use crate::math::refuse;
 use crate::model::components::Load;

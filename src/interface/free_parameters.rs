@@ -1,6 +1,5 @@
 //! Constants of a system that are sought: names for them, and a parameter that they follow.
 
-use crate::interface::builder::constants;
 use crate::interface::handle::Handle;
 use crate::model::components::{Spring, Tendon};
 use crate::model::system::{Body, ElectricConstants, Joint, Muscle};
@@ -22,6 +21,18 @@ impl Handle<Muscle> {
     pub fn viscosity(self) -> Constant {
         self.material(MaterialConstant::Viscosity)
     }
+}
+
+/// Declares names of constants of a part, each by its arguments and the constant.
+macro_rules! constants {
+    ($part:ty: $($(#[$about:meta])* $name:ident($($given:ident),*) $constant:ident($($further:expr),*);)*) => {
+        impl Handle<$part> {
+            $($(#[$about])*
+            pub fn $name(self, $($given: usize),*) -> Constant {
+                Constant::$constant(self.index(), $($further),*)
+            })*
+        }
+    };
 }
 
 constants! {

@@ -1,4 +1,4 @@
-//! Handles: names of the parts of a system.
+//! Handles: names of the parts of a system; and the declaration of methods that change a part or a task and return it.
 
 use crate::model::components::Load;
 use crate::model::system::{Body, Muscle, Potential, Solid, number_sources};
@@ -158,3 +158,18 @@ impl Input {
         }
     }
 }
+
+/// Declares methods of a builder, each by its arguments and the change that it makes.
+macro_rules! builder {
+    (impl $part:ty; $($(#[$about:meta])* $name:ident($($given:ident: $of:ty),*) |$it:ident| $change:expr;)*) => {
+        impl $part {
+            $($(#[$about])*
+            pub fn $name(mut self, $($given: $of),*) -> Self {
+                let $it = &mut self;
+                $change;
+                self
+            })*
+        }
+    };
+}
+pub(super) use builder;

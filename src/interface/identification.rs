@@ -4,9 +4,8 @@ use crate::control::problem::{
     self, ChangedScene, Channel, Prior, Reading, Regime, SoughtStart, Voltages, begin_late,
 };
 use crate::identify::{Identified, identify};
-use crate::interface::builder::builder;
 use crate::interface::error::{Entry, Result, signals};
-use crate::interface::handle::{Handle, Input};
+use crate::interface::handle::{Handle, Input, builder};
 use crate::interface::state::State;
 use crate::math::{Signal, Vector, in_order, refuse};
 use crate::model::components::{Load, Spring, Tendon};

@@ -1,13 +1,10 @@
 //! The library as a program uses it: systems built part by part, simulated and steered in memory.
 //!
-//! - `handle`, `parts`, `components`: systems and their parts, with defaults; checked when they are used.
-//! - `state`, `free_parameters`, `equilibrium`, `simulation`, `control`, `costs`, `cost_checks`, `identification`: the tasks of a system.
-//! - `motion`, `error`: results and errors; `builder`: declaration of methods.
+//! - `handle`, `parts`: systems and their parts, with defaults; checked when they are used.
+//! - `state`, `free_parameters`, `equilibrium`, `simulation`, `control`, `costs`, `identification`: the tasks of a system.
+//! - `motion`, `error`: results and errors.
 
-mod builder;
-mod components;
 mod control;
-mod cost_checks;
 mod costs;
 mod equilibrium;
 mod error;

@@ -3,9 +3,8 @@
 use crate::control::problem::{self, Voltages};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, Integrator, Newton, Solving};
-use crate::interface::builder::builder;
 use crate::interface::error::{Entry, Error, Result, signals};
-use crate::interface::handle::{Handle, Input};
+use crate::interface::handle::{Handle, Input, builder};
 use crate::interface::motion::Motion;
 use crate::interface::state::State;
 use crate::math::{Signal, refuse};

@@ -67,12 +67,9 @@ const LAST: [Row; 5] = [
 
 /// Names of the terms of the library, in the order of the sum.
 pub fn terms() -> impl Iterator<Item = &'static str> {
-    let of_components =
-        |names: &'static [&[&'static str]]| names.iter().copied().flatten().copied();
     let [first, middle, last] =
         [&FIRST[..], &MIDDLE, &LAST].map(|rows| rows.iter().map(|row| row.0));
-    let potentials = first.chain(of_components(POTENTIALS));
-    let works = middle.chain(of_components(DISSIPATIONS));
+    let (potentials, works) = (first.chain(POTENTIALS), middle.chain(DISSIPATIONS));
     potentials.chain(works).chain(last)
 }
 

@@ -6,6 +6,7 @@ use crate::model::system::bodies::Attachment;
 use crate::model::terms::Terms;
 use nalgebra::Vector3;
 use std::fmt::Debug;
+use std::sync::Arc;
 
 /// A part of a scene between material points of bodies.
 ///
@@ -54,33 +55,12 @@ pub trait Component: Debug + Send + Sync {
     }
 }
 
-/// A kind of component; [`Components`](super::Components) lists all of them.
-pub trait Kind: Component + Sized {
-    /// A part of this kind in words: "spring".
-    const NAME: &'static str;
+/// A component of another crate; equal to itself only.
+#[derive(Clone, Debug)]
+pub struct Other(pub Arc<dyn Component>);
 
-    /// Reason why its terms are absent from a scene without such a part.
-    const ABSENT: &'static str;
-
-    /// Names of its terms with a potential, in the order of the sum.
-    const POTENTIALS: &'static [&'static str];
-
-    /// Names of its terms that dissipate, in the order of the sum.
-    const DISSIPATIONS: &'static [&'static str] = &[];
-
-    /// Its unique name.
-    fn name_mut(&mut self) -> &mut String;
-
-    /// Makes the terms of the part with this index in the list; an index is needed where its constants can be free.
-    fn build_at(&self, _index: usize, terms: &mut Terms<'_>) {
-        self.build(terms);
+impl PartialEq for Other {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.0, &other.0)
     }
-}
-
-/// Makes the terms of all parts of a kind.
-pub(super) fn build<K: Kind>(parts: &[K], terms: &mut Terms<'_>) {
-    let parts = parts.iter().enumerate();
-    parts.for_each(|(index, part)| part.build_at(index, terms));
-    let names = K::POTENTIALS.iter().chain(K::DISSIPATIONS);
-    names.for_each(|term| terms.without(term, K::ABSENT));
 }

@@ -2,7 +2,7 @@
 
 use crate::energy::{LinearSpring, SpanDamper};
 use crate::math::{Fault, Key, not_negative, refuse};
-use crate::model::components::component::{Component, Kind};
+use crate::model::components::component::Component;
 use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::system::bodies::Attachment;
@@ -26,8 +26,8 @@ pub struct Spring {
     pub rest_length: f64,
 }
 
-const ELASTICITY: &str = "spring elasticity";
-const DAMPING: &str = "spring damping";
+pub(super) const ELASTICITY: &str = "spring elasticity";
+pub(super) const DAMPING: &str = "spring damping";
 
 impl Spring {
     fn length(&self) -> f64 {
@@ -35,15 +35,12 @@ impl Spring {
     }
 
     /// Makes the terms; `index` is its place among the springs of the system, constants of which can be free.
-    fn add(&self, index: Option<usize>, terms: &mut Terms<'_>) {
+    pub(crate) fn add(&self, index: Option<usize>, terms: &mut Terms<'_>) {
         let Some(span) = terms.span(&self.from, &self.to) else {
             terms.without_each([ELASTICITY, DAMPING], "no spring that moves");
             return;
         };
-        let mut nothing = match index {
-            Some(_) => terms.sought().read(),
-            None => Read::nothing(),
-        };
+        let mut nothing = index.map_or_else(Read::nothing, |_| terms.sought().read());
         let index = index.unwrap_or_default();
         let ends = MovedPoints {
             parts: [-1.0, 1.0],
@@ -75,21 +72,6 @@ impl Spring {
             Some(_) => terms.without(DAMPING, "a state of rest dissipates nothing"),
             None => terms.without(DAMPING, "no spring that moves names a damping"),
         }
-    }
-}
-
-impl Kind for Spring {
-    const NAME: &'static str = "spring";
-    const ABSENT: &'static str = "no spring";
-    const POTENTIALS: &'static [&'static str] = &[ELASTICITY];
-    const DISSIPATIONS: &'static [&'static str] = &[DAMPING];
-
-    fn name_mut(&mut self) -> &mut String {
-        &mut self.name
-    }
-
-    fn build_at(&self, index: usize, terms: &mut Terms<'_>) {
-        self.add(Some(index), terms);
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::energy::Cable;
 use crate::functional::Path;
 use crate::math::{Fault, Key, not_negative, positive, refuse};
-use crate::model::components::component::{Component, Kind};
+use crate::model::components::component::Component;
 use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::system::bodies::Attachment;
@@ -26,7 +26,7 @@ pub struct Tendon {
     pub smoothing: f64,
 }
 
-const ELASTICITY: &str = "tendon elasticity";
+pub(super) const ELASTICITY: &str = "tendon elasticity";
 
 /// Sum of the distances of neighbours.
 fn path_length(places: impl Iterator<Item = Vector3<f64>> + Clone) -> f64 {
@@ -43,8 +43,10 @@ impl Tendon {
         }
     }
 
-    /// Makes the term; `index` is its place among the tendons of the system, constants of which are read.
-    fn add(&self, mut read: Read, index: usize, terms: &mut Terms<'_>) {
+    /// Makes the term; `index` is its place among the tendons of the system, constants of which can be free.
+    pub(crate) fn add(&self, index: Option<usize>, terms: &mut Terms<'_>) {
+        let mut read = index.map_or_else(Read::nothing, |_| terms.sought().read());
+        let index = index.unwrap_or_default();
         let mut length = read.constant(Constant::TendonLength(index), self.rest_length);
         let mut spans = Vec::new();
         for (first, pair) in self.through.windows(2).enumerate() {
@@ -87,20 +89,6 @@ impl Tendon {
     }
 }
 
-impl Kind for Tendon {
-    const NAME: &'static str = "tendon";
-    const ABSENT: &'static str = "no tendon";
-    const POTENTIALS: &'static [&'static str] = &[ELASTICITY];
-
-    fn name_mut(&mut self) -> &mut String {
-        &mut self.name
-    }
-
-    fn build_at(&self, index: usize, terms: &mut Terms<'_>) {
-        self.add(terms.sought().read(), index, terms);
-    }
-}
-
 impl Component for Tendon {
     fn name(&self) -> &str {
         &self.name
@@ -133,7 +121,7 @@ impl Component for Tendon {
     }
 
     fn build(&self, terms: &mut Terms<'_>) {
-        self.add(Read::nothing(), 0, terms);
+        self.add(None, terms);
     }
 
     fn columns(&self) -> Vec<(&'static str, &'static str)> {

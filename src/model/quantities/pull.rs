@@ -5,7 +5,6 @@ use crate::functional::{
     Displacement, Impulse, LawElement, Measure, Stencil, Sum, Term, TermKind, VectorArg,
 };
 use crate::math::Vector;
-use crate::model::components::Kind;
 use crate::model::components::muscle_constants::MuscleConstants;
 use crate::model::layout::internal::InternalKind;
 use crate::model::layout::joint_sections::JointSection;
@@ -27,7 +26,7 @@ impl Reading<'_, '_> {
             Pulling::Spring(index) => {
                 let spring = &components.springs[index];
                 let span = terms.span(&spring.from, &spring.to)?;
-                spring.build_at(index, &mut terms);
+                spring.add(Some(index), &mut terms);
                 (span, 1.0)
             }
             Pulling::Tendon(index) => {
@@ -36,7 +35,7 @@ impl Reading<'_, '_> {
                 let spans: Vec<usize> = pairs
                     .filter_map(|pair| terms.span(&pair[0], &pair[1]))
                     .collect();
-                tendon.build_at(index, &mut terms);
+                tendon.add(Some(index), &mut terms);
                 // One tension along all of it.
                 let span = *spans.first()?;
                 let times = spans.iter().filter(|other| **other == span).count();

@@ -41,10 +41,12 @@ impl System {
         let solids = named("solids", &self.solids, |solid| &solid.name);
         let markers = named("markers", &self.markers, |marker| &marker.name);
         let loads = named("loads", &self.components.loads, |load| &load.name);
-        let components = self.components.listed();
-        let others: Vec<_> = components
-            .map(|(list, i, part)| (list, i, part.name()))
-            .collect();
+        let others = [
+            named("springs", &self.components.springs, |spring| &spring.name),
+            named("tendons", &self.components.tendons, |tendon| &tendon.name),
+            named("others", &self.components.others, |other| other.0.name()),
+        ];
+        let others = others.concat();
         // Muscles, blocks and loads are inputs.
         let inputs = [&muscles[..], &solids, &loads].concat();
         for list in [&bodies, &joints, &inputs, &markers, &others] {
@@ -71,7 +73,7 @@ impl System {
             )
         })?;
         each(&loads, |index| self.check_load(index))?;
-        for (part, (_, _, component)) in others.into_iter().zip(self.components.listed()) {
+        for (part, component) in others.into_iter().zip(self.components.iter()) {
             let points = component.points();
             let mut points = points.iter().map(|point| self.check_point("", point));
             let checked = points.try_for_each(|checked| checked);
