@@ -6,7 +6,7 @@ use std::path::Path;
 use stl_io::{Normal, Triangle, Vertex, create_stl_reader, write_stl};
 
 use crate::files::json::source::{NoBytes, of_file};
-use crate::mesh::error::MeshError;
+use crate::mesh::error::{MeshError, MeshPlace};
 use crate::mesh::triangulated::Surface;
 
 /// Largest number of triangles of a surface.
@@ -29,10 +29,9 @@ pub fn read(path: &Path, unit: f64) -> Result<Surface, MeshError> {
             file,
             cause: cause.to_string(),
         }),
-        Err(NoBytes::TooLarge(found, expected)) => Err(MeshError::Whole {
-            found: format!("{found} in {file:?}"),
-            expected,
-        }),
+        Err(NoBytes::TooLarge(found, expected)) => {
+            Err(MeshPlace::Whole.wrong(format!("{found} in {file:?}"), expected))
+        }
     }
 }
 
@@ -41,9 +40,8 @@ pub fn read(path: &Path, unit: f64) -> Result<Surface, MeshError> {
 /// # Errors
 /// As of [`read`].
 pub fn parse(mut bytes: Vec<u8>, file: &str, unit: f64) -> Result<Surface, MeshError> {
-    let wrong = |found: String, expected: &str| MeshError::Whole {
-        found: format!("{file:?}, {found}"),
-        expected: expected.to_owned(),
+    let wrong = |found: String, expected: &str| {
+        MeshPlace::Whole.wrong(format!("{file:?}, {found}"), expected)
     };
     let solids = match binary_count(&bytes) {
         // A title that begins like a file of text would be taken for one.

@@ -9,8 +9,9 @@
 //!
 //! (F. Tonon, Explicit exact formulas for the 3-D tetrahedron inertia tensor in terms of its vertex coordinates, J. Math. Stat. 1, 2005).
 
-use super::error::MeshError;
+use super::error::{MeshError, MeshPlace};
 use super::triangulated::Surface;
+use crate::math::refuse;
 use nalgebra::{Matrix3, Vector3};
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -57,17 +58,11 @@ impl Surface {
             let products = [a, b, c, sum].map(|x| x * x.transpose());
             second += products.iter().sum::<Matrix3<f64>>() * (determinant / 120.0);
         }
-        if volume.abs() <= FLAT * (upper - lower).max().powi(3) {
-            return Err(MeshError::whole(
-                "a surface that encloses no volume",
-                "that of a solid",
-            ));
-        }
-        if volume < 0.0 {
-            let found = format!("normals that point inwards, and a volume of {volume:.4e} mm^3");
-            let expected = "corners of triangles that are counter-clockwise seen from outside";
-            return Err(MeshError::whole(found, expected));
-        }
+        refuse!(if volume.abs() <= FLAT * (upper - lower).max().powi(3), MeshPlace::Whole;
+            found "a surface that encloses no volume", expected "that of a solid");
+        refuse!(if volume < 0.0, MeshPlace::Whole;
+            found format!("normals that point inwards, and a volume of {volume:.4e} mm^3"),
+            expected "corners of triangles that are counter-clockwise seen from outside");
         let centre = first / volume;
         Ok(EnclosedSolid {
             volume,
@@ -78,20 +73,18 @@ impl Surface {
 
     /// Checks that vertices are finite, and that each edge is passed as often one way as the other.
     fn check_closed(&self) -> Result<(), MeshError> {
-        if self.triangles.is_empty() {
-            return Err(MeshError::whole("no triangle with an area", "a surface"));
-        }
+        refuse!(if self.triangles.is_empty(), MeshPlace::Whole;
+            found "no triangle with an area", expected "a surface");
         let outside = |vertex: &&Vector3<f64>| !vertex.iter().all(|x| x.is_finite());
-        if let Some(vertex) = self.vertices.iter().find(outside) {
-            return Err(MeshError::whole(place(vertex), "finite places"));
-        }
+        refuse!(if let Some(vertex) = self.vertices.iter().find(outside), MeshPlace::Whole;
+            found place(vertex), expected "finite places");
         let mut seen = FxHashSet::default();
         for triangle in &self.triangles {
             let least = (0..3).min_by_key(|&i| triangle[i]).unwrap_or(0);
             if !seen.insert([0, 1, 2].map(|i| triangle[(least + i) % 3])) {
                 let [a, b, c] = triangle.map(|vertex| place(&self.vertices[vertex]));
                 let found = format!("the triangle {a}, {b}, {c} twice");
-                return Err(MeshError::whole(found, "each triangle once"));
+                return Err(MeshPlace::Whole.wrong(found, "each triangle once"));
             }
         }
         // Passes of an edge from the lower vertex to the higher one, and the other way.
@@ -118,11 +111,11 @@ impl Surface {
             .iter()
             .filter(|(_, pass)| (pass[0] + pass[1]) % 2 == 1);
         match open.count() {
-            0 => Err(MeshError::whole(
+            0 => Err(MeshPlace::Whole.wrong(
                 format!("triangles of opposite orientation at the edge from {ends}"),
                 "neighbours that are oriented alike",
             )),
-            count => Err(MeshError::whole(
+            count => Err(MeshPlace::Whole.wrong(
                 format!(
                     "an open surface: {count} of {} edges have a triangle on one side only; one edge in question goes from {ends}",
                     passes.len()

@@ -15,46 +15,11 @@ pub enum MeshError {
         /// Error of the operating system.
         cause: String,
     },
-    /// A line of a file is malformed.
-    #[error("{file}:{line}: found {found}, expected {expected}")]
-    Line {
-        /// File as the user named it.
-        file: String,
-        /// Number of the line, counted from one.
-        line: usize,
-        /// Value that was found.
-        found: String,
-        /// Value that is expected instead.
-        expected: String,
-    },
-    /// Layers of a box do not fill it.
-    #[error("layers along {axis}: found {found}, expected {expected}")]
-    Layers {
-        /// Direction of the layers: x, y or z.
-        axis: char,
-        /// Value that was found.
-        found: String,
-        /// Value that is expected instead.
-        expected: String,
-    },
-    /// An element cannot be integrated.
-    #[error(
-        "{element}: found {found}, expected {expected}; its nodes are at {}",
-        places(nodes)
-    )]
-    Element {
-        /// The element.
-        element: ElementName,
-        /// Places in mm of those nodes that exist, in the order of the element.
-        nodes: Vec<Vector3<f64>>,
-        /// Value that was found.
-        found: String,
-        /// Value that is expected instead.
-        expected: String,
-    },
-    /// The mesh as a whole is not usable.
-    #[error("mesh: found {found}, expected {expected}")]
-    Whole {
+    /// Something is not as it is expected.
+    #[error("{place}: found {found}, expected {expected}{}", place.nodes())]
+    Wrong {
+        /// Place of the mistake.
+        place: MeshPlace,
         /// Value that was found.
         found: String,
         /// Value that is expected instead.
@@ -62,12 +27,47 @@ pub enum MeshError {
     },
 }
 
-impl MeshError {
-    /// An error of the mesh as a whole.
-    pub(super) fn whole(found: impl Into<String>, expected: impl Into<String>) -> Self {
-        Self::Whole {
+/// Place of a mistake in a mesh or its file.
+#[derive(Clone, Debug, PartialEq)]
+pub enum MeshPlace {
+    /// The mesh as a whole.
+    Whole,
+    /// Layers of a box along x, y or z.
+    Layers(char),
+    /// A line of a file as the user named it, by its number from one.
+    Line(String, usize),
+    /// An element, and the places in mm of those nodes that exist, in its order.
+    Element(ElementName, Vec<Vector3<f64>>),
+}
+
+impl MeshPlace {
+    /// The error of what is found here.
+    pub(crate) fn wrong(self, found: impl Into<String>, expected: impl Into<String>) -> MeshError {
+        MeshError::Wrong {
+            place: self,
             found: found.into(),
             expected: expected.into(),
+        }
+    }
+
+    /// The places of nodes, for messages.
+    fn nodes(&self) -> String {
+        let Self::Element(_, nodes) = self else {
+            return String::new();
+        };
+        let place = |x: &Vector3<f64>| format!("({}, {}, {})", x.x, x.y, x.z);
+        let places = nodes.iter().map(place).collect::<Vec<_>>();
+        format!("; its nodes are at {}", places.join(", "))
+    }
+}
+
+impl fmt::Display for MeshPlace {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Whole => f.write_str("mesh"),
+            Self::Layers(axis) => write!(f, "layers along {axis}"),
+            Self::Line(file, line) => write!(f, "{file}:{line}"),
+            Self::Element(element, _) => element.fmt(f),
         }
     }
 }
@@ -95,9 +95,4 @@ impl fmt::Display for ElementName {
             Self::File { file, line, number } => write!(f, "{file}:{line}: element {number}"),
         }
     }
-}
-
-fn places(nodes: &[Vector3<f64>]) -> String {
-    let place = |x: &Vector3<f64>| format!("({}, {}, {})", x.x, x.y, x.z);
-    nodes.iter().map(place).collect::<Vec<_>>().join(", ")
 }

@@ -1,7 +1,8 @@
 //! Structured boxes: hexahedra between node planes along x, y and z.
 
+use crate::math::refuse;
 use crate::mesh::Mesh;
-use crate::mesh::error::MeshError;
+use crate::mesh::error::{MeshError, MeshPlace};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -35,30 +36,19 @@ impl Grid {
             planes: Default::default(),
         };
         for (axis, layers) in per_direction.iter().enumerate() {
-            let wrong = |found: String, expected: String| MeshError::Layers {
-                axis: AXES[axis],
-                found,
-                expected,
-            };
             for &(thickness, elements) in layers {
                 let fills = thickness > 0.0 && thickness.is_finite() && elements > 0;
-                if !fills {
-                    return Err(wrong(
-                        format!("a layer of {thickness} mm in {elements} elements"),
-                        "a positive thickness in one or more elements".to_owned(),
-                    ));
-                }
+                refuse!(if !fills, MeshPlace::Layers(AXES[axis]);
+                    found format!("a layer of {thickness} mm in {elements} elements"),
+                    expected "a positive thickness in one or more elements");
             }
             let sum = layers
                 .iter()
                 .fold(0.0, |sum, &(thickness, _)| sum + thickness);
             let fits = (sum - size[axis]).abs() <= 1e-9 * size[axis];
-            if !fits {
-                return Err(wrong(
-                    format!("thicknesses that sum to {sum} mm"),
-                    format!("{} mm, the size of the box", size[axis]),
-                ));
-            }
+            refuse!(if !fits, MeshPlace::Layers(AXES[axis]);
+                found format!("thicknesses that sum to {sum} mm"),
+                expected format!("{} mm, the size of the box", size[axis]));
             grid.planes[axis] = planes(origin[axis], layers);
             if let Some(last) = grid.planes[axis].last_mut() {
                 *last = origin[axis] + size[axis];

@@ -4,8 +4,9 @@
 //! columns of `∂x/∂ξ` there: the ratio is 1 for bricks of any proportions, 0 for a flat corner, −1 for a brick turned
 //! inside out.
 
-use super::error::{ElementName, MeshError};
+use super::error::{ElementName, MeshError, MeshPlace};
 use super::{CORNERS, Mesh};
+use crate::math::refuse;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashMap;
 
@@ -22,29 +23,24 @@ impl Mesh {
     /// One of these does not hold.
     pub fn check(&self) -> Result<(), MeshError> {
         self.check_elements(ElementName::Index)?;
-        if self.regions.len() != self.hexahedra.len() {
-            let (regions, elements) = (self.regions.len(), self.hexahedra.len());
-            let found = format!("{regions} regions of {elements} hexahedra");
-            return Err(MeshError::whole(found, "one region per hexahedron"));
-        }
+        let (regions, elements) = (self.regions.len(), self.hexahedra.len());
+        refuse!(if regions != elements, MeshPlace::Whole;
+            found format!("{regions} regions of {elements} hexahedra"),
+            expected "one region per hexahedron");
         let names = self.region_names.len();
-        if let Some(region) = self.regions.iter().find(|&&region| region >= names) {
-            let found = format!("region {region} of {names} names");
-            return Err(MeshError::whole(found, "a name for each region"));
-        }
+        let beyond = self.regions.iter().find(|&&region| region >= names);
+        refuse!(if let Some(region) = beyond, MeshPlace::Whole;
+            found format!("region {region} of {names} names"), expected "a name for each region");
         let count = self.nodes.len();
         for (name, nodes) in &self.sets {
             let ascending = nodes.windows(2).all(|pair| pair[0] < pair[1]);
             let outside = nodes.iter().find(|&&node| node >= count);
-            if let Some(node) = outside {
-                let found = format!("node {node} in the set {name:?}");
-                let expected = format!("indices below the number of nodes, {count}");
-                return Err(MeshError::whole(found, expected));
-            }
-            if !ascending {
-                let found = format!("a set {name:?} that is not sorted");
-                return Err(MeshError::whole(found, "ascending nodes, each once"));
-            }
+            refuse!(if let Some(node) = outside, MeshPlace::Whole;
+                found format!("node {node} in the set {name:?}"),
+                expected format!("indices below the number of nodes, {count}"));
+            refuse!(if !ascending, MeshPlace::Whole;
+                found format!("a set {name:?} that is not sorted"),
+                expected "ascending nodes, each once");
         }
         Ok(())
     }
@@ -54,9 +50,8 @@ impl Mesh {
         &self,
         name: impl Fn(usize) -> ElementName,
     ) -> Result<(), MeshError> {
-        if self.hexahedra.is_empty() {
-            return Err(MeshError::whole("no element", "one hexahedron or more"));
-        }
+        refuse!(if self.hexahedra.is_empty(), MeshPlace::Whole;
+            found "no element", expected "one hexahedron or more");
         let mut seen: HashMap<[usize; 8], usize> = HashMap::new();
         for (element, nodes) in self.hexahedra.iter().enumerate() {
             let mut sorted = *nodes;
@@ -64,12 +59,8 @@ impl Mesh {
             let twin = seen.insert(sorted, element);
             if let Some((found, expected)) = self.fault(nodes, twin, &name) {
                 let places = nodes.iter().filter_map(|&node| self.nodes.get(node));
-                return Err(MeshError::Element {
-                    element: name(element),
-                    nodes: places.copied().collect(),
-                    found,
-                    expected,
-                });
+                let place = MeshPlace::Element(name(element), places.copied().collect());
+                return Err(place.wrong(found, expected));
             }
         }
         Ok(())

@@ -6,7 +6,7 @@ use crate::files::json::error::{Result, SceneError};
 use crate::files::json::scope::{Scope, refuse, the_one};
 use crate::files::scene::point::vector;
 use crate::files::scene::spec_solids::{DivisionSpec, GridSpec, LayerSpec, SolidSpec};
-use crate::mesh::error::MeshError;
+use crate::mesh::error::{MeshError, MeshPlace};
 use crate::mesh::grid::Grid;
 use crate::mesh::{Mesh, gmsh};
 use crate::model::{MOST_ELEMENTS, check_elements};
@@ -51,22 +51,16 @@ pub(crate) fn mesh_mistake(error: &MeshError, scope: &Scope<'_>) -> SceneError {
             let found = format!("{file:?}, which cannot be read ({cause})");
             scope.wrong(found, "a readable file")
         }
-        MeshError::Line {
-            file,
-            line,
+        MeshError::Wrong {
+            place,
             found,
             expected,
-        } => scope.wrong(format!("{found} in {file}:{line}"), expected),
-        MeshError::Element {
-            element,
-            found,
-            expected,
-            ..
-        } => scope.wrong(format!("{found} in {element}"), expected),
-        MeshError::Layers {
-            found, expected, ..
-        }
-        | MeshError::Whole { found, expected } => scope.wrong(found, expected),
+        } => match place {
+            MeshPlace::Line(..) | MeshPlace::Element(..) => {
+                scope.wrong(format!("{found} in {place}"), expected)
+            }
+            MeshPlace::Layers(_) | MeshPlace::Whole => scope.wrong(found, expected),
+        },
     }
 }
 
@@ -89,7 +83,10 @@ fn boxed(spec: &GridSpec, scope: &Scope<'_>) -> Result<Meshed> {
     elements.map_err(|fault| scope.refuse(&spec.elements, &fault))?;
     let grid = Grid::layers(corner, size, layers.clone()).map_err(|error| {
         let axis = match error {
-            MeshError::Layers { axis, .. } => "xyz".find(axis).unwrap_or(0),
+            MeshError::Wrong {
+                place: MeshPlace::Layers(axis),
+                ..
+            } => "xyz".find(axis).unwrap_or(0),
             _ => 0,
         };
         mesh_mistake(&error, &scope.index(axis))

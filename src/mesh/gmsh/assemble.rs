@@ -1,54 +1,37 @@
 //! Conversion of the contents of a file to a mesh: used nodes, regions of physical volumes, sets of the other physical groups.
 
 use super::contents::{Contents, Element, Group, UNGROUPED};
+use crate::math::refuse;
 use crate::mesh::Mesh;
-use crate::mesh::error::{ElementName, MeshError};
+use crate::mesh::error::{ElementName, MeshError, MeshPlace};
 use std::collections::{BTreeMap, BTreeSet};
 
 impl Contents {
     pub(super) fn assemble(mut self, file: &str, unit: f64) -> Result<Mesh, MeshError> {
-        let line_error = |line: usize, found: String, expected: &str| MeshError::Line {
-            file: file.to_owned(),
-            line,
-            found,
-            expected: expected.to_owned(),
-        };
+        let at = |line: usize| MeshPlace::Line(file.to_owned(), line);
         self.elements.sort_by_key(|element| element.number);
         for element in &self.elements {
-            if let Some(node) = element.nodes.iter().find(|n| !self.nodes.contains_key(n)) {
-                return Err(line_error(
-                    element.line,
-                    format!("node {node} in element {}", element.number),
-                    "a node that $Nodes lists",
-                ));
-            }
+            let unknown = element.nodes.iter().find(|n| !self.nodes.contains_key(n));
+            refuse!(if let Some(node) = unknown, at(element.line);
+                found format!("node {node} in element {}", element.number),
+                expected "a node that $Nodes lists");
         }
         let (solid, others): (Vec<_>, Vec<_>) =
             self.elements.iter().partition(|e| e.dimension == 3);
-        if solid.is_empty() {
-            return Err(line_error(
-                self.line,
-                format!("no hexahedron among {} elements", self.elements.len()),
-                "8-node hexahedra (type 5)",
-            ));
-        }
+        refuse!(if solid.is_empty(), at(self.line);
+            found format!("no hexahedron among {} elements", self.elements.len()),
+            expected "8-node hexahedra (type 5)");
         let used: BTreeSet<u64> = solid.iter().flat_map(|e| &e.nodes).copied().collect();
         let index: BTreeMap<u64, usize> = used.iter().enumerate().map(|(i, &n)| (n, i)).collect();
 
         let (regions, region_names) = self.regions(&solid).map_err(|element| {
             let names: Vec<_> = element.groups.iter().map(|&g| self.name((3, g))).collect();
-            line_error(
-                element.line,
-                format!("element {} in {}", element.number, names.join(" and ")),
-                "each hexahedron in one physical volume",
-            )
+            let found = format!("element {} in {}", element.number, names.join(" and "));
+            at(element.line).wrong(found, "each hexahedron in one physical volume")
         })?;
         let sets = self.sets(&others, &index).map_err(|(line, name)| {
-            line_error(
-                line,
-                format!("no node of a hexahedron in the physical group {name:?}"),
-                "one node or more that is",
-            )
+            let found = format!("no node of a hexahedron in the physical group {name:?}");
+            at(line).wrong(found, "one node or more that is")
         })?;
         let corner = |element: &Element, i: usize| index[&element.nodes[i]];
         let hexahedra = solid

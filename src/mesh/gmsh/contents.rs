@@ -2,7 +2,7 @@
 //!
 //! The lines of a file with their numbers, and the words of a line.
 
-use crate::mesh::error::MeshError;
+use crate::mesh::error::{MeshError, MeshPlace};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 use std::iter::Enumerate;
@@ -147,12 +147,7 @@ impl<'a> Lines<'a> {
 impl<'a> Line<'a> {
     /// This line is not as expected.
     pub(super) fn error(&self, found: impl Into<String>, expected: impl Into<String>) -> MeshError {
-        MeshError::Line {
-            file: self.file.to_owned(),
-            line: self.number,
-            found: found.into(),
-            expected: expected.into(),
-        }
+        MeshPlace::Line(self.file.to_owned(), self.number).wrong(found, expected)
     }
 
     /// The words of a line that is expected to say what `shape` describes.
