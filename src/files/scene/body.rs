@@ -63,14 +63,11 @@ fn check_keys(spec: &BodySpec, scope: &Scope<'_>) -> Result<()> {
     } else if !is_single {
         scope.one_key(shapes)?;
     }
-    match (&spec.inertia, &spec.products_of_inertia) {
-        (None, Some(_)) => {
-            let place = scope.key("products_of_inertia");
-            let expected = "\"inertia\", the diagonal of the tensor, beside it";
-            Err(place.wrong("products of inertia alone", expected))
-        }
-        _ => Ok(()),
-    }
+    let is_alone = spec.inertia.is_none() && spec.products_of_inertia.is_some();
+    refuse!(if is_alone, scope.key("products_of_inertia");
+        found "products of inertia alone",
+        expected "\"inertia\", the diagonal of the tensor, beside it");
+    Ok(())
 }
 
 /// Shape and directors; d₃ is the axis of a cylinder.

@@ -1,7 +1,7 @@
 //! Conversion of a joint of a scene file: its kind, axis, damper, spring, stops and prescribed motion.
 
 use crate::files::json::objects::objects;
-use crate::files::json::scope::{Result, Scope, the_one};
+use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::scene::names::find_body;
 use crate::files::scene::point::{Point, unit_axis, vector};
 use crate::files::signal::{SignalSpec, signal};
@@ -144,18 +144,14 @@ fn at_rest(spec: &JointSpec, kind: &JointKind, scope: &Scope<'_>) -> Result<f64>
     let is_sprung = spec.stiffness.is_some();
     let is_revolute = is_sprung && matches!(kind, JointKind::Revolute { .. });
     let is_prismatic = is_sprung && matches!(kind, JointKind::Prismatic { .. });
-    let wrong = |name: &str, found: String, joint: &str| {
-        let expected = format!("a {joint} joint with a \"stiffness\"");
-        Err(scope.key(name).wrong(found, expected))
-    };
-    match (&spec.rest_angle, &spec.rest_displacement) {
-        (Some(angle), _) if !is_revolute => wrong("rest_angle", angle.to_string(), "revolute"),
-        (_, Some(place)) if !is_prismatic => {
-            wrong("rest_displacement", place.to_string(), "prismatic")
-        }
-        (Some(angle), _) => Ok(angle.value()),
-        (None, place) => Ok(place.as_ref().map_or(0.0, Quantity::value)),
-    }
+    let (angle, place) = (&spec.rest_angle, &spec.rest_displacement);
+    refuse!(if let (Some(angle), false) = (angle, is_revolute), scope.key("rest_angle");
+        found angle, expected "a revolute joint with a \"stiffness\"");
+    refuse!(if let (Some(place), false) = (place, is_prismatic), scope.key("rest_displacement");
+        found place, expected "a prismatic joint with a \"stiffness\"");
+    let (angle, place) = (angle.as_ref(), place.as_ref());
+    let rest = angle.map(Quantity::value).or(place.map(Quantity::value));
+    Ok(rest.unwrap_or(0.0))
 }
 
 objects! {

@@ -53,13 +53,11 @@ fn lame_lambda(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<f64>> {
     let shear_modulus = spec.shear_modulus.value();
     match (&spec.lame_lambda, spec.poisson_ratio) {
         (lambda, None) => Ok(lambda.as_ref().map(Quantity::value)),
-        (None, Some(ratio)) if ratio > -1.0 && ratio < 0.5 => {
+        (None, Some(ratio)) => {
+            refuse!(unless ratio > -1.0 && ratio < 0.5, scope.key("poisson_ratio");
+                found ratio, expected "a number larger than -1 and smaller than 0.5");
             Ok(Some(Material::first_lame_constant(shear_modulus, ratio)))
         }
-        (None, Some(ratio)) => Err(scope.key("poisson_ratio").wrong(
-            ratio.to_string(),
-            "a number larger than -1 and smaller than 0.5",
-        )),
         (Some(_), Some(_)) => {
             let found = "\"lame_lambda\" and \"poisson_ratio\"";
             Err(scope.wrong(found, "one of the two"))
@@ -80,26 +78,19 @@ fn electric(spec: &MaterialSpec, scope: &Scope<'_>) -> Result<Option<ElectricCon
             c2: c2.value(),
             permittivity: VACUUM_PERMITTIVITY,
         })),
-        (Some(ratio), None, None) if ratio >= 1.0 => {
+        (Some(ratio), None, None) => {
+            refuse!(unless ratio >= 1.0, scope.key("relative_permittivity");
+                found ratio, expected "a number that is 1 or more");
             Ok(Some(match spec.dielectric.unwrap_or_default() {
                 Dielectric::FirstOrder => ElectricConstants::first_order(ratio),
                 Dielectric::Ideal => ElectricConstants::ideal(ratio),
             }))
         }
-        (Some(ratio), None, None) => {
-            let place = scope.key("relative_permittivity");
-            Err(place.wrong(ratio.to_string(), "a number that is 1 or more"))
-        }
         _ => {
-            let there = |quantity: Option<&Quantity<_>>, key| quantity.map(|_| key);
-            let found: Vec<&str> = [
-                ratio.map(|_| "\"relative_permittivity\""),
-                there(c1, "\"c1\""),
-                there(c2, "\"c2\""),
-            ]
-            .into_iter()
-            .flatten()
-            .collect();
+            let keys = ["relative_permittivity", "c1", "c2"];
+            let there = [ratio.is_some(), c1.is_some(), c2.is_some()];
+            let found = keys.iter().zip(there).filter(|(_, there)| *there);
+            let found: Vec<_> = found.map(|(key, _)| format!("{key:?}")).collect();
             let expected = "either \"relative_permittivity\" or both \"c1\" and \"c2\"";
             Err(scope.wrong(found.join(" and "), expected))
         }
