@@ -1,9 +1,10 @@
 //! Overrides that a study or a sweep writes, with the places that they are from.
 
 use crate::files::json::error::{Result, SceneError};
+use crate::files::json::path::JsonPath;
+use crate::files::json::scope::{Scope, refuse};
 use crate::files::json::set::Override;
 use crate::files::study::ChangesSpec;
-use crate::files::{JsonPath, Scope};
 use serde_json::Value;
 use std::path::Path;
 
@@ -15,6 +16,22 @@ pub(crate) struct Changes<'a> {
 }
 
 impl<'a> Changes<'a> {
+    /// Changes of the scene, which stand at a place.
+    pub(crate) fn of_scene<'s>(
+        set: impl IntoIterator<Item = (&'s String, &'s Value)>,
+        scope: &Scope<'a>,
+        expected: &str,
+    ) -> Result<Self> {
+        let mut changes = Self::default();
+        for (key, value) in set {
+            let place = scope.key(key);
+            refuse!(if !key.starts_with("scene."), place;
+                found format!("the key {key:?}"), expected expected);
+            changes.push(key, value, place)?;
+        }
+        Ok(changes)
+    }
+
     pub(crate) fn extend(&mut self, set: &ChangesSpec, scope: &Scope<'a>) -> Result<()> {
         let mut each = set.iter();
         each.try_for_each(|(key, value)| self.push(key, value, scope.key(key)))

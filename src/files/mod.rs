@@ -10,17 +10,18 @@
 
 use crate::control::Motion;
 use crate::control::problem::{Disturbed, Duration, Regulator, Task};
+use crate::files::changes::Changes;
 use crate::files::json::error::Result;
 use crate::files::json::scope::refuse;
 use crate::files::json::set::Override;
 use crate::files::problem::at::At;
 use crate::files::problem::build::{ProblemSpec, SceneSource, build_problem};
-use crate::files::problem::changed_scenes::changed_scenes;
-use crate::files::problem::disturbance::disturbed;
 use crate::files::problem::feedback::regulator;
-use crate::files::problem::motions::{MotionDocument, motions, together};
 use crate::files::problem::output::{Output, output};
 use crate::files::problem::receding::add_plan;
+use crate::files::problem::variants::{
+    MotionDocument, changed_scenes, disturbed, motions, together,
+};
 use crate::files::scene::build::build_scene;
 use crate::files::scene::constants::WrittenScene;
 use crate::files::scene::expand::{add_named, expanded};
@@ -123,9 +124,7 @@ fn problem_of(read: impl FnOnce() -> Result<Document>, overrides: &[String]) -> 
         .iter()
         .map(|written| Override::parse(written))
         .collect::<Result<_, _>>()?;
-    let (of_scene, of_problem): (Vec<_>, Vec<_>) = overrides
-        .into_iter()
-        .partition(|change| change.in_scene().is_some());
+    let [of_scene, of_problem] = parted(overrides);
     let mut document = read()?;
     for change in &of_problem {
         change.apply(&mut document)?;
@@ -141,9 +140,7 @@ fn problem_of(read: impl FnOnce() -> Result<Document>, overrides: &[String]) -> 
         changes,
     } in list
     {
-        let all = [&of_scene[..], &changes.overrides()?].concat();
-        let loaded = alone(of_motion, &all, &ChangesSpec::default());
-        let loaded = loaded.map_err(|error| changes.at_fault(error, &document.path))?;
+        let loaded = changed(of_motion, &of_scene, &changes, &ChangesSpec::default())?;
         let Task::Control(control) = &loaded.task else {
             unreachable!("an entry \"control\" is that task");
         };
@@ -165,22 +162,41 @@ fn problem_of(read: impl FnOnce() -> Result<Document>, overrides: &[String]) -> 
     })
 }
 
+/// Overrides of the scene, and of the rest of a problem.
+fn parted(overrides: Vec<Override>) -> [Vec<Override>; 2] {
+    let of_scene = |change: &Override| change.in_scene().is_some();
+    overrides.into_iter().partition(of_scene).into()
+}
+
+/// A problem with changes after overrides of its scene; an error of a change is one at its place.
+fn changed(
+    mut document: Document,
+    of_scene: &[Override],
+    changes: &Changes<'_>,
+    set: &ChangesSpec,
+) -> Result<Loaded> {
+    let path = document.path.clone();
+    let [in_scene, in_problem] = parted(changes.overrides()?);
+    let mut in_problem = in_problem.iter();
+    let applied = in_problem.try_for_each(|change| change.apply(&mut document));
+    let loaded = applied.and_then(|()| alone(document, &[of_scene, &in_scene].concat(), set));
+    loaded.map_err(|error| changes.at_fault(error, &path))
+}
+
 /// A problem without a list of motions, whose recordings may have scenes of their own, and whose controller may name a disturbance.
 fn with_changed_scenes(document: &Document, of_scene: &[Override]) -> Result<Loaded> {
     let scenes = changed_scenes(document)?;
     let mut loaded = alone(document.clone(), of_scene, &ChangesSpec::default())?;
     for of in scenes {
-        let all = [of_scene, &of.changes.overrides()?].concat();
-        let changed = alone(document.clone(), &all, &of.set);
-        let changed = changed.map_err(|error| of.changes.at_fault(error, &document.path))?;
+        let changed = changed(document.clone(), of_scene, &of.changes, &of.set)?;
         of.add(&mut loaded.task, changed.system, changed.task, document)?;
         let notes = changed.notes.into_iter();
         let further: Vec<_> = notes.filter(|note| !loaded.notes.contains(note)).collect();
         loaded.notes.extend(further);
     }
     let texts = [&*loaded.problem, &*loaded.scene];
-    loaded.disturbed = disturbed(document, of_scene, texts, |document, of_scene| {
-        let found = alone(document, of_scene, &ChangesSpec::default())?;
+    loaded.disturbed = disturbed(document, texts, |document, changes| {
+        let found = changed(document, of_scene, changes, &ChangesSpec::default())?;
         Ok((found.system, found.task))
     })?;
     Ok(loaded)

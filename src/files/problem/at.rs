@@ -4,9 +4,10 @@ use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::scene::names::names;
 use crate::files::units::quantity::{
-    Angle, AngularVelocity, Kind, Length, PhysicalQuantity, Quantity, Velocity, Voltage,
+    Angle, AngularVelocity, Charge, ChargeDensity, Force, ForceDensity, Kind, Length,
+    PhysicalQuantity, Quantity, Stress, Torque, Velocity, Voltage,
 };
-use crate::model::system::{JointKind, Source, System, voltage_sources};
+use crate::model::system::{InputKind, JointKind, Source, System, voltage_sources};
 use crate::model::{Coordinates, Graph, PartKind};
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -176,6 +177,22 @@ impl<'a> At<'a> {
             true => (Velocity::kind(), ("m/s", 1.0)),
             false => (AngularVelocity::kind(), ("rad/s", 1e3)),
         }
+    }
+
+    /// Kind and unit of the input of a source.
+    pub(crate) fn unit_of_source(&self, source: usize) -> (Kind, SiUnit) {
+        let input = self.sources[source].kind;
+        let kind = match input {
+            InputKind::Voltage => Voltage::kind(),
+            InputKind::Force => Force::kind(),
+            InputKind::Torque => Torque::kind(),
+            InputKind::Traction => Stress::kind(),
+            InputKind::BodyForce => ForceDensity::kind(),
+            InputKind::SurfaceCharge => ChargeDensity::kind(),
+            InputKind::Charge => Charge::kind(),
+        };
+        let (symbol, size) = input.si();
+        (kind, (symbol, size.recip()))
     }
 
     /// A value of a joint, in the kind that the joint calls for.

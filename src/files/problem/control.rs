@@ -1,31 +1,37 @@
-//! Conversion of the control entry of a problem file to its task.
+//! A control problem as it is written, and its conversion to a task.
 
 use crate::control::Earlier;
 use crate::control::problem::{
-    BoundaryState, Control, Duration, EnergyCost, Guess, Objective, Solver, SourceEnergy, Voltages,
-    absent_loads,
+    BoundaryState, Control, Duration, Guess, Objective, Solver, Voltages, absent_loads,
 };
+use crate::files::json::either::AutoOr;
+use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse, the_one};
-use crate::files::problem::at::{At, ELECTRIC_KEYS};
-use crate::files::problem::free::parameters;
-use crate::files::problem::loads::{check_end, load, load_bounds, loads};
-use crate::files::problem::quantities::keys::{at_the_end, limits, track};
-use crate::files::problem::quantities::muscle::amount_costs;
-use crate::files::problem::sensitivity::with_varied;
-use crate::files::problem::spec_control::{
-    ControlSpec, DurationSpec, EnergySpec, GuessSpec, IntervalsSpec, IntervalsWord, ObjectiveSpec,
-    OptionSpec, SolverSpec,
+use crate::files::problem::at::{At, CoordinatesSpec, ELECTRIC_KEYS};
+use crate::files::problem::inputs::{
+    LoadBounds, LoadMap, SOLUTION_PATH, VoltagesSpec, by_source, check_end, check_rest_voltages,
+    load, load_bounds, loads, over_time, voltage_bounds,
 };
-use crate::files::problem::state::{Course, goal_state, sought_hold, start_state, waypoints};
-use crate::files::problem::voltages::{SOLUTION_PATH, VoltagesSpec, over_time};
+use crate::files::problem::numbers::{FreeMap, SensitivityMap, parameters, with_varied};
+use crate::files::problem::objective::{ObjectiveSpec, objective, with_peak};
+use crate::files::problem::quantities::keys::{LimitSpec, limits};
+use crate::files::problem::state::{
+    Course, GoalSpec, HoldSpec, StartSpec, WaypointSpec, goal_state, sought_hold, start_state,
+    waypoints,
+};
 use crate::files::scene::constants::WrittenScene;
-use crate::files::signal::signal;
 use crate::files::solution::SolutionFile;
-use crate::files::units::quantity::Voltage;
+use crate::files::study::ChangesSpec;
+use crate::files::units::quantity::{Quantity, Time, Voltage};
 use crate::ipopt::{LinearSolver, OptionValue};
-use crate::math::{Random, Signal, shortest};
+use crate::math::{Random, Signal};
 use crate::model::Graph;
 use crate::model::system::{Fidelity, Muscle, Source, System};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::de::IgnoredAny;
+use serde::{Deserialize, Deserializer};
+use serde_json::Value;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 /// Most intervals of a control problem; a slip of the pen asks for more.
@@ -76,7 +82,7 @@ pub(crate) fn control(
     let (mut given, course) = given_voltages(spec, &at.key("voltages"))?;
     let is_sought = |s: usize| at.sources[s].takes_voltage && !given.contains_key(&s);
     let seeks_voltage = course.is_none() && (0..at.sources.len()).any(is_sought);
-    let voltage_bounds = voltage_bounds(spec, seeks_voltage, at)?;
+    let voltage_bounds = voltage_bounds(&spec.voltage_bounds, seeks_voltage, at)?;
     for (key, state) in [("start", &start), ("goal", &goal)] {
         let is_given = |s: usize| course.is_some() || given.contains_key(&s);
         check_rest_voltages(state, is_given, voltage_bounds, &at.key(key))?;
@@ -131,15 +137,6 @@ fn goal(spec: &ControlSpec, objective: &Objective, at: &At<'_>) -> Result<Bounda
     }
 }
 
-/// The problem with the cost of the peak voltage, where that has a weight.
-fn with_peak(mut control: Control, spec: &ObjectiveSpec, at: &At<'_>) -> Result<Control> {
-    let weight = spec.peak_voltage;
-    let is_given = weight > 0.0 && !control.minimise_peak_voltage(weight, at.system);
-    refuse!(if is_given, at.key("peak_voltage");
-        found "a weight where all voltages are given", expected "a voltage that is sought");
-    Ok(control)
-}
-
 pub(crate) fn duration(spec: &DurationSpec, at: &Scope<'_>) -> Result<Duration> {
     let free = match spec {
         DurationSpec::Given(duration) => return at.positive(duration).map(Duration::Given),
@@ -155,45 +152,16 @@ pub(crate) fn duration(spec: &DurationSpec, at: &Scope<'_>) -> Result<Duration> 
     Ok(Duration::Free { min, max, guess })
 }
 
-/// Bounds of voltages; needed where one is sought.
-pub(crate) fn voltage_bounds(
-    spec: &ControlSpec,
-    is_needed: bool,
-    at: &Scope<'_>,
-) -> Result<[f64; 2]> {
-    let Some([lower, upper]) = &spec.voltage_bounds else {
-        refuse!(if is_needed, at;
-            found "no key \"voltage_bounds\"", expected "the bounds of the voltages that are sought");
-        return Ok([0.0; 2]);
-    };
-    let at = at.key("voltage_bounds");
-    let bounds = [lower.value(), upper.value()];
-    refuse!(if bounds[0] < 0.0, at.index(0);
-        found lower, expected "a voltage that is not negative");
-    refuse!(if bounds[0] > bounds[1], at.index(1);
-        found upper,
-        expected format!("an upper bound that is no less than the lower bound {lower}"));
-    Ok(bounds)
-}
-
 /// Voltages that are given, source by source or all of them in intervals of time; one is left to be sought, unless a constant of
 /// the scene is sought.
-pub(crate) fn given_voltages(
+fn given_voltages(
     spec: &ControlSpec,
     at: &At<'_>,
 ) -> Result<(BTreeMap<usize, Signal>, Option<Voltages>)> {
-    let mut given = BTreeMap::new();
-    let mut course = None;
-    match &spec.voltages {
-        VoltagesSpec::Signals(map) => {
-            for (name, spec) in map {
-                let at = at.key(name);
-                let source = at.driven(name)?;
-                given.insert(source, signal(spec, &Voltage::kind(), &at)?);
-            }
-        }
-        other => course = Some(over_time(other, at)?),
-    }
+    let (given, course) = match &spec.voltages {
+        VoltagesSpec::Signals(map) => (by_source(map, at)?, None),
+        other => (BTreeMap::new(), Some(over_time(other, at)?)),
+    };
     let jumps = matches!(course, Some(Voltages::Sampled { .. }));
     refuse!(if jumps && matches!(spec.duration, DurationSpec::Free(_)), at;
         found "voltages that jump from interval to interval where the duration is free",
@@ -206,26 +174,6 @@ pub(crate) fn given_voltages(
     }
     let expected = "at least one voltage that is not given, to be sought, or a constant of the scene under \"free\"";
     Err(at.wrong("all voltages", expected))
-}
-
-/// Rest voltages of sources that are sought lie in the bounds.
-pub(crate) fn check_rest_voltages(
-    state: &BoundaryState,
-    is_given: impl Fn(usize) -> bool,
-    [lower, upper]: [f64; 2],
-    at: &At<'_>,
-) -> Result<()> {
-    let BoundaryState::RestAtVoltages(voltages, _) = state else {
-        return Ok(());
-    };
-    for (s, (source, &voltage)) in at.sources.iter().zip(voltages).enumerate() {
-        let outside = voltage < lower || voltage > upper;
-        let is_sought = source.takes_voltage && !is_given(s);
-        refuse!(if is_sought && outside, at.key("rest_at_voltages").key(&source.name);
-            found format!("{} V", shortest(voltage, 9)),
-            expected format!("a voltage within the bounds {lower} V to {upper} V"));
-    }
-    Ok(())
 }
 
 /// No more final conditions than degrees of freedom, where these can be counted from the joints: nodes bring more.
@@ -253,46 +201,6 @@ pub(crate) fn check_final_conditions(goal: &BoundaryState, at: &At<'_>) -> Resul
         found format!("{conditions} final conditions on positions"),
         expected format!("no more than the {freedoms} degrees of freedom"));
     Ok(())
-}
-
-pub(crate) fn objective(spec: &ObjectiveSpec, at: &At<'_>) -> Result<Objective> {
-    let weights = [
-        ("effort", spec.effort),
-        ("rate", spec.rate),
-        ("duration", spec.duration),
-        ("peak_voltage", spec.peak_voltage),
-        ("muscle_volume", spec.muscle_volume),
-        ("muscle_mass", spec.muscle_mass),
-    ];
-    for (key, weight) in weights {
-        at.key(key).weight(weight)?;
-    }
-    let along: Vec<_> = at.key("track").each(&spec.track, track)?;
-    let ends: Vec<_> = at.key("final").each(&spec.at_the_end, at_the_end)?;
-    let mut quantities = [along, ends].concat().concat();
-    quantities.extend(amount_costs([spec.muscle_volume, spec.muscle_mass], at)?);
-    let [electrical, mechanical] = ["electrical_energy", "mechanical_work"].map(|key| at.key(key));
-    let mut of_sources = energies(
-        &spec.electrical_energy,
-        SourceEnergy::Electrical,
-        &electrical,
-    )?;
-    of_sources.extend(energies(
-        &spec.mechanical_work,
-        SourceEnergy::Mechanical,
-        &mechanical,
-    )?);
-    let is_any = !quantities.is_empty() || !of_sources.is_empty();
-    refuse!(if !is_any && weights.iter().all(|(_, weight)| *weight == 0.0), at;
-        found "no weight",
-        expected "a positive weight of \"effort\", \"rate\", \"duration\", \"peak_voltage\", \"muscle_volume\", \"muscle_mass\", \"electrical_energy\" or \"mechanical_work\", or something to \"track\" or a \"final\" place");
-    Ok(Objective {
-        effort: spec.effort,
-        rate: spec.rate,
-        duration: spec.duration,
-        quantities,
-        energies: of_sources,
-    })
 }
 
 pub(crate) fn solver(spec: &SolverSpec, at: &Scope<'_>) -> Result<Solver> {
@@ -332,58 +240,6 @@ fn linear_solver(spec: &SolverSpec, at: &Scope<'_>) -> Result<LinearSolver> {
     Ok(named.into())
 }
 
-/// Names that an energy may have, for messages: the charge of an electrode of finite elements is not known at instants.
-const LUMPED: &str =
-    "lumped muscles: all sources, or those that \"sources\" names beside the \"weight\"";
-
-/// The costs that one weight stands for; none where it is zero.
-pub(crate) fn energies(
-    spec: &EnergySpec,
-    energy: SourceEnergy,
-    at: &At<'_>,
-) -> Result<Vec<EnergyCost>> {
-    let cost = |source: usize, weight: f64, place: &At<'_>| {
-        let cost = EnergyCost {
-            source,
-            energy,
-            weight,
-        };
-        let muscle = at.system.muscles.get(source);
-        let what = match muscle.and_then(|muscle| muscle.circuit) {
-            Some(circuit) if circuit.resistance.is_none() => "leaks and has no resistor",
-            Some(_) => "has a resistor",
-            None => "drives finite elements",
-        };
-        let found = || format!("{:?}, which {what}", at.sources[source].name);
-        refuse!(if !cost.exists(at.system), place; found found(), expected LUMPED);
-        Ok(cost)
-    };
-    match spec {
-        EnergySpec::All(weight) => {
-            let weight = at.weight(*weight)?;
-            let takes = |s: &usize| at.sources[*s].takes_voltage && weight > 0.0;
-            let all = (0..at.sources.len()).filter(takes);
-            all.map(|source| cost(source, weight, at)).collect()
-        }
-        EnergySpec::Named(spec) => {
-            let weight = at.key("weight").weight(spec.weight)?;
-            let list = at.key("sources");
-            refuse!(if spec.sources.is_empty(), list;
-                found "no source", expected "one source or more");
-            let mut costs: Vec<EnergyCost> = Vec::new();
-            for (index, name) in spec.sources.iter().enumerate() {
-                let place = list.index(index);
-                let source = place.driven(name)?;
-                refuse!(if costs.iter().any(|cost| cost.source == source), place;
-                    found format!("{name:?} again"), expected "each source once");
-                costs.push(cost(source, weight, &place)?);
-            }
-            costs.retain(|cost| cost.weight > 0.0);
-            Ok(costs)
-        }
-    }
-}
-
 pub(crate) fn guess(spec: &GuessSpec, bounds: [f64; 2], at: &At<'_>) -> Result<Guess> {
     let GuessSpec::Object(spec) = spec else {
         return Ok(Guess::Interpolate);
@@ -397,7 +253,7 @@ pub(crate) fn guess(spec: &GuessSpec, bounds: [f64; 2], at: &At<'_>) -> Result<G
             Ok(Guess::Solution(Earlier::new(SolutionFile(path))))
         };
         "random" random |_, of| {
-            let voltages = drawn(of.seed, at.system, bounds);
+            let voltages = drawn(of.seed, at, bounds);
             Ok(Guess::Simulate(Voltages::Constant(voltages)))
         };
     )
@@ -420,11 +276,258 @@ pub(crate) fn unwritten(goal: &BoundaryState, system: &System) -> Guess {
 }
 
 /// A voltage within the bounds for each source that takes one, drawn at random.
-pub(crate) fn drawn(seed: u64, system: &System, [lower, upper]: [f64; 2]) -> Vec<f64> {
+fn drawn(seed: u64, at: &At<'_>, [lower, upper]: [f64; 2]) -> Vec<f64> {
     let mut random = Random::new(seed);
     let draw = |source: &Source| match source.takes_voltage {
         true => random.between(lower, upper),
         false => 0.0,
     };
-    system.sources().iter().map(draw).collect()
+    at.sources.iter().map(draw).collect()
+}
+
+read_objects! {
+    /// An optimal control problem.
+    #[schemars(transform = needed_without_motions)]
+    pub struct ControlSpec {
+        /// Final time, SI unit s, or its bounds and a guess.
+        pub duration: DurationSpec,
+        /// Number of intervals, 1 or more, or `"auto"`, as where it is not written: as many as the verification of the optimum needs to confirm
+        /// an error of 1 % of the path length, or of the part that `--accuracy` gives.
+        pub intervals: Option<IntervalsSpec>,
+        /// Initial state; of a periodic motion, whose start is sought, the state where the solver begins.
+        pub start: StartSpec,
+        /// Final state; may be left out where the objective names something to `track` or where to end (`final`), and is free then.
+        pub goal: Option<GoalSpec>,
+        /// Lower and upper bound of every voltage that is sought, SI unit V; not needed where none is.
+        pub voltage_bounds: Option<[Quantity<Voltage>; 2]>,
+        /// Lower and upper bound of each load that is sought, by name, SI units N, N m, Pa, N/m³ and C/m².
+        pub load_bounds?: LoadBounds,
+        /// Loads that are given, by name, constant or functions of time, SI units N, N m, Pa, N/m³ and C/m²; 0 where neither given nor sought.
+        pub loads?: LoadMap,
+        /// Voltages that are given, by the names of muscles and driven electrodes (`block.electrode`), SI unit V: they are no unknowns,
+        /// and one of 0 for all the time leaves no electric term at all. Functions of time, a table and those of a solution give all
+        /// voltages, as of a simulation; then a constant of the scene has to be sought.
+        pub voltages?: VoltagesSpec,
+        /// Constants of the scene that are sought, by their paths, such as `materials.silicone.shear_modulus`.
+        pub free?: FreeMap,
+        /// Numbers by which the optimum is differentiated, by their paths: constants of the scene, such as `materials.silicone.shear_modulus`, and
+        /// `duration`, `goal.joint_angles.NAME`, `goal.markers.NAME[0]`, `goal.rest_at_voltages.NAME`, `start.joint_angles.NAME`,
+        /// `start.joint_rates.NAME`, `start.rest_at_voltages.NAME`, `voltage_bounds[1]`, `load_bounds.NAME[1]`, `objective.effort`, `objective.rate`,
+        /// `objective.duration`.
+        pub sensitivity?: SensitivityMap,
+        /// Treatment of a goal that cannot be kept, because it is unstable or its voltages are beyond their bounds: it is
+        /// `reported` (where not written), or refused where holding it is `required`.
+        pub hold?: HoldSpec,
+        /// Objective that is minimised.
+        pub objective: ObjectiveSpec,
+        /// Path limits.
+        pub limits?: Vec<LimitSpec>,
+        /// Places, orientations and joint coordinates that the motion reaches on its way.
+        pub waypoints?: Vec<WaypointSpec>,
+        /// Coordinates.
+        pub coordinates: Option<CoordinatesSpec>,
+        /// Initial guess of the solver; where not written, of elastic blocks whose goal has `hold`, the motion under these voltages, otherwise
+        /// `"interpolate"`.
+        pub guess: Option<GuessSpec>,
+        /// Options of the solver.
+        pub solver?: SolverSpec,
+        /// Several motions in one optimisation: what `free` seeks is the same in all of them, and the objective is the sum of theirs. Each names the
+        /// keys that are other ones in it.
+        pub motions?: Vec<MotionSpec>,
+        /// Names of muscles, driven electrodes (`block.electrode`) and loads whose inputs are sought once for all motions; these have one
+        /// given duration and one number of intervals.
+        pub shared_inputs?: Vec<String>,
+        /// The objective of several motions: the `sum` of theirs (where not written), or that of the `worst`, the greatest one.
+        pub combine: Option<CombinedSpec>,
+    }
+
+    /// The objective of several motions.
+    pub enum CombinedSpec {
+        /// The sum of their objectives.
+        Sum,
+        /// The greatest of their objectives.
+        Worst,
+    }
+}
+
+/// Keys that are needed, but where each motion may have its own.
+fn needed_without_motions(schema: &mut Schema) {
+    if let Some(needed) = schema.remove("required") {
+        let no_motions = json_schema!({ "not": { "required": ["motions"] } });
+        schema.insert("if".into(), no_motions.to_value());
+        let needed = json_schema!({ "required": needed });
+        schema.insert("then".into(), needed.to_value());
+    }
+}
+
+/// Keys of a control problem that all of its motions have in common.
+pub(crate) const COMMON: [&str; 6] = [
+    "combine",
+    "free",
+    "motions",
+    "sensitivity",
+    "shared_inputs",
+    "solver",
+];
+
+/// One of several motions: the keys of a control problem that are other ones in it. It is read with those that it shares with the others.
+#[derive(Clone, Debug, Deserialize)]
+pub struct MotionSpec(IgnoredAny);
+
+impl JsonSchema for MotionSpec {
+    fn schema_name() -> Cow<'static, str> {
+        "MotionSpec".into()
+    }
+
+    fn json_schema(generator: &mut SchemaGenerator) -> Schema {
+        let name = json_schema!({
+            "description": "Name, and that of its folder of results; one without a name has its number, as in `motion1`.",
+            "type": ["string", "null"]
+        });
+        let mut set = generator.subschema_for::<ChangesSpec>();
+        set.insert(
+            "description".into(),
+            "Constants of the scene that are other ones in this motion, by their places, such as `scene.materials.silicone.shear_modulus`.".into(),
+        );
+        let mut schema = ControlSpec::json_schema(generator);
+        schema.remove("if");
+        schema.remove("then");
+        if let Some(Value::Object(keys)) = schema.get_mut("properties") {
+            keys.retain(|key, _| !COMMON.contains(&&**key));
+            keys.insert("name".into(), name.into());
+            keys.insert("set".into(), set.into());
+        }
+        schema.insert(
+            "description".into(),
+            "One of several motions: the keys of a control problem that are other ones in it; those that it does not name are those of \
+             `control`."
+                .into(),
+        );
+        schema
+    }
+}
+
+/// Number of intervals.
+#[derive(Clone, Copy, Debug, JsonSchema)]
+#[serde(untagged)]
+pub enum IntervalsSpec {
+    /// `"auto"`.
+    Word(IntervalsWord),
+    /// A number.
+    Given(usize),
+}
+
+/// Intervals of no given number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum IntervalsWord {
+    /// As many as the verification needs.
+    Auto,
+}
+
+impl<'de> Deserialize<'de> for IntervalsSpec {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        deserializer.deserialize_any(AutoOr {
+            expected: "a whole number of intervals, or \"auto\"",
+            auto: Self::Word(IntervalsWord::Auto),
+            value: Self::Given,
+            is_whole: true,
+        })
+    }
+}
+
+read_objects! {
+    /// Bounds of a free final time.
+    pub struct FreeDurationSpec {
+        /// Lower bound, SI unit s.
+        pub min: Quantity<Time>,
+        /// Upper bound, SI unit s.
+        pub max: Quantity<Time>,
+        /// Duration at which the solver starts, SI unit s.
+        pub guess: Quantity<Time>,
+    }
+
+    /// Options of the solver.
+    #[derive(Default)]
+    pub struct SolverSpec {
+        /// Relative tolerance, 1e-10 where not written.
+        pub tolerance: Option<f64>,
+        /// Limit of iterations, 500 where not written.
+        pub max_iterations: Option<usize>,
+        /// Solver of the linear systems, `auto` where not written.
+        pub linear_solver: Option<ControlSolverSpec>,
+        /// Options of Ipopt by name.
+        pub ipopt: BTreeMap<String, OptionSpec>,
+    }
+
+    /// Solver of the linear systems of a control problem.
+    pub enum ControlSolverSpec: LinearSolver {
+        /// `stages` where Ipopt takes it, else `mumps`.
+        Auto,
+        /// LDLᵀ in the order of the horizon.
+        Stages,
+        /// LDLᵀ of MUMPS.
+        Mumps,
+    }
+}
+
+/// A value of an option of Ipopt.
+#[derive(Clone, Debug, PartialEq, Deserialize, JsonSchema)]
+#[serde(
+    untagged,
+    expecting = "another kind of value, expected a whole number, a number or a text"
+)]
+pub enum OptionSpec {
+    /// Whole number.
+    Integer(i32),
+    /// Number.
+    Number(f64),
+    /// Text.
+    Text(String),
+}
+
+read_objects! {
+    /// A simulation as a guess.
+    pub struct GuessSimulationSpec {
+        /// Constant voltages, those of a solution, or a table, as of a simulation; 0 where not written.
+        pub voltages?: VoltagesSpec,
+    }
+
+    /// A random guess.
+    pub struct RandomGuessSpec {
+        /// Equal seeds give equal guesses.
+        pub seed: u64,
+    }
+
+    /// An object of a guess: exactly one of the three.
+    pub struct GuessObjectSpec {
+        /// A simulation under given voltages.
+        pub simulate: Option<GuessSimulationSpec>,
+        /// Path of a `solution.json` or of the folder that holds it, relative to this file or to the current folder.
+        pub solution: Option<String>,
+        /// A simulation under constant voltages drawn at random within the bounds.
+        pub random: Option<RandomGuessSpec>,
+    }
+
+    /// A word of a guess.
+    pub enum GuessWord {
+        /// Smooth interpolation between start and goal.
+        Interpolate,
+    }
+
+    /// A time, or bounds of a free one.
+    pub either DurationSpec("a time, such as \"0.6 s\", or an object with \"min\", \"max\" and \"guess\"") {
+        /// Given.
+        Given: Quantity<Time>,
+        /// Free.
+        Free: FreeDurationSpec,
+    }
+
+    /// A word or an object.
+    pub either GuessSpec("\"interpolate\" or an object with \"simulate\", \"solution\" or \"random\"") {
+        /// `"interpolate"`.
+        Word: GuessWord,
+        /// An object.
+        Object: GuessObjectSpec,
+    }
 }

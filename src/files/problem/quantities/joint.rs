@@ -3,11 +3,11 @@
 use crate::control::problem::Limit;
 use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::{At, SiUnit};
+use crate::files::problem::inputs::SOLUTION_PATH;
 use crate::files::problem::quantities::entry::{
     Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, costs, limits, limits_of,
     square,
 };
-use crate::files::problem::voltages::SOLUTION_PATH;
 use crate::files::scene::point::unit_axis;
 use crate::files::signal::{SignalSpec, signal};
 use crate::files::solution::record;

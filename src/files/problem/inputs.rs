@@ -1,13 +1,17 @@
-//! Voltages over time: by the names of sources, from an earlier `solution.json`, or a table in the problem.
+//! Inputs of a problem: voltages and loads, given over time or sought between bounds.
+//!
+//! Voltages over time are written by the names of sources, as those of an earlier `solution.json`, or as a table.
 
-use crate::control::problem::{Afterwards, Voltages};
+use crate::control::problem::{Afterwards, BoundaryState, Duration, Voltages};
 use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::{At, VoltageMap};
+use crate::files::problem::state::{StartSpec, start_state};
+use crate::files::scene::names::names;
 use crate::files::signal::{SignalSpec, signal};
 use crate::files::solution::record;
-use crate::files::units::quantity::{Quantity, Time, Voltage};
-use crate::math::Signal;
+use crate::files::units::quantity::{Kind, LoadSize, Quantity, Time, Voltage};
+use crate::math::{Signal, shortest};
 use crate::model::system::System;
 use schemars::JsonSchema;
 use serde::de::{Error, MapAccess, Unexpected, Visitor};
@@ -20,10 +24,64 @@ use std::path::{Path, PathBuf};
 pub(crate) const SOLUTION_PATH: &str =
     "the path of a solution.json, or of the folder that holds it";
 
+/// Voltages over time by the names of sources, by source.
+pub(crate) fn by_source(
+    map: &BTreeMap<String, SignalSpec<Voltage>>,
+    at: &At<'_>,
+) -> Result<BTreeMap<usize, Signal>> {
+    at.each_named(map, |name, spec, at| {
+        Ok((at.driven(name)?, signal(spec, &Voltage::kind(), at)?))
+    })
+}
+
+/// Bounds of voltages; needed where one is sought.
+pub(crate) fn voltage_bounds(
+    written: &Option<[Quantity<Voltage>; 2]>,
+    is_needed: bool,
+    at: &At<'_>,
+) -> Result<[f64; 2]> {
+    let Some([lower, upper]) = written else {
+        refuse!(if is_needed, at;
+            found "no key \"voltage_bounds\"", expected "the bounds of the voltages that are sought");
+        return Ok([0.0; 2]);
+    };
+    let at = at.key("voltage_bounds");
+    let bounds = [lower.value(), upper.value()];
+    refuse!(if bounds[0] < 0.0, at.index(0);
+        found lower, expected "a voltage that is not negative");
+    refuse!(if bounds[0] > bounds[1], at.index(1);
+        found upper,
+        expected format!("an upper bound that is no less than the lower bound {lower}"));
+    Ok(bounds)
+}
+
+/// Rest voltages of sources that are sought lie in the bounds.
+pub(crate) fn check_rest_voltages(
+    state: &BoundaryState,
+    is_given: impl Fn(usize) -> bool,
+    [lower, upper]: [f64; 2],
+    at: &At<'_>,
+) -> Result<()> {
+    let BoundaryState::RestAtVoltages(voltages, _) = state else {
+        return Ok(());
+    };
+    for (s, (source, &voltage)) in at.sources.iter().zip(voltages).enumerate() {
+        let outside = voltage < lower || voltage > upper;
+        let is_sought = source.takes_voltage && !is_given(s);
+        refuse!(if is_sought && outside, at.key("rest_at_voltages").key(&source.name);
+            found format!("{} V", shortest(voltage, 9)),
+            expected format!("a voltage within the bounds {lower} V to {upper} V"));
+    }
+    Ok(())
+}
+
 /// Voltages of a simulation.
 pub(crate) fn over_time(spec: &VoltagesSpec, at: &At<'_>) -> Result<Voltages> {
     match spec {
-        VoltagesSpec::Signals(map) => signals(map, at),
+        VoltagesSpec::Signals(map) => {
+            let none = Voltages::Constant(vec![0.0; at.sources.len()]);
+            Ok(none.with(by_source(map, at)?))
+        }
         VoltagesSpec::Solution(solution) => {
             let place = at.key("solution");
             let path = place.solution_file(&solution.solution, SOLUTION_PATH)?;
@@ -31,19 +89,6 @@ pub(crate) fn over_time(spec: &VoltagesSpec, at: &At<'_>) -> Result<Voltages> {
         }
         VoltagesSpec::Table(table) => of_table(table, at),
     }
-}
-
-/// Voltages by the names of sources; constant ones where all of them are.
-pub(crate) fn signals(
-    map: &BTreeMap<String, SignalSpec<Voltage>>,
-    at: &At<'_>,
-) -> Result<Voltages> {
-    let mut signals = vec![Signal::Constant(0.0); at.sources.len()];
-    for (name, spec) in map {
-        let at = at.key(name);
-        signals[at.driven(name)?] = signal(spec, &Voltage::kind(), &at)?;
-    }
-    Ok(Voltages::of_signals(signals))
 }
 
 /// Voltages of a solution, then those that hold its goal, or where it names none the last ones; 0 for sources that it does
@@ -225,4 +270,92 @@ impl<'de> Visitor<'de> for VoltagesVisitor {
             }
         }
     }
+}
+
+/// Loads by name, constant or functions of time.
+pub(crate) type LoadMap = BTreeMap<String, SignalSpec<LoadSize>>;
+
+/// Bounds of loads by name.
+pub(crate) type LoadBounds = BTreeMap<String, [Quantity<LoadSize>; 2]>;
+
+/// Index and unit of a load.
+fn find(name: &str, at: &At<'_>) -> Result<(usize, Kind)> {
+    let first = at.system.first_load();
+    let loads = names(&at.sources[first..], |source| &source.name);
+    let index = at.find(name, &loads, "the name of a load")?;
+    let (kind, _) = at.unit_of_source(first + index);
+    Ok((first + index, kind))
+}
+
+/// Loads over time, by source.
+pub(crate) fn loads(map: &LoadMap, at: &At<'_>) -> Result<BTreeMap<usize, Signal>> {
+    at.each_named(map, |name, spec, at| {
+        let (source, kind) = find(name, at)?;
+        Ok((source, signal(spec, &kind, at)?))
+    })
+}
+
+/// Bounds of the loads that are sought, by source; none of them is `given`.
+pub(crate) fn load_bounds(
+    map: &LoadBounds,
+    given: &BTreeMap<usize, Signal>,
+    at: &At<'_>,
+) -> Result<BTreeMap<usize, [f64; 2]>> {
+    at.each_named(map, |name, written, at| {
+        let (source, kind) = find(name, at)?;
+        refuse!(if given.contains_key(&source), at;
+            found format!("{name:?}, which \"loads\" gives"), expected "a load that is sought");
+        let value = |index: usize| at.index(index).value_as(&written[index], &kind);
+        let bounds = [value(0)?, value(1)?];
+        refuse!(if bounds[0] > bounds[1], at.index(1);
+            found written[1],
+            expected format!("an upper bound that is no less than the lower bound {}", written[0]));
+        Ok((source, bounds))
+    })
+}
+
+/// Puts the loads of a time in ms on a state of rest.
+pub(crate) fn load(state: &mut BoundaryState, loads: &BTreeMap<usize, Signal>, time: f64) {
+    let row = match state {
+        BoundaryState::RestAtVoltages(row, _) => row,
+        BoundaryState::Markers {
+            hold: Some(row), ..
+        } => row,
+        _ => return,
+    };
+    for (&source, signal) in loads {
+        row[source] = signal.at(time);
+    }
+}
+
+/// Refuses loads under which a goal rests at one free duration and not at another.
+pub(crate) fn check_end(
+    loads: &BTreeMap<usize, Signal>,
+    goal: &BoundaryState,
+    duration: Duration,
+    at: &At<'_>,
+) -> Result<()> {
+    let changes = |(_, load): &(&usize, &Signal)| duration.final_value(load).is_none();
+    let mut changing = loads.iter().filter(|_| goal.voltages().is_some());
+    refuse!(if let Some((&source, _)) = changing.find(changes), at.key(&at.sources[source].name);
+        found "a load that still changes between the bounds of the free duration, while the goal rests under it",
+        expected "one that is constant from the lower bound on, another goal, or a given duration");
+    Ok(())
+}
+
+/// Start and inputs of a motion under given ones: at rest in the reference configuration where no start is written.
+pub(crate) fn driven(
+    start: Option<&StartSpec>,
+    voltages: &VoltagesSpec,
+    loads: &LoadMap,
+    at: &At<'_>,
+) -> Result<(BoundaryState, Voltages)> {
+    let mut start = match start {
+        Some(start) => start_state(start, &at.key("start"))?,
+        None => BoundaryState::at_joints(BTreeMap::new()),
+    };
+    let voltages = over_time(voltages, &at.key("voltages"))?;
+    let loads = self::loads(loads, &at.key("loads"))?;
+    load(&mut start, &loads, 0.0);
+    Ok((start, voltages.with(loads)))
 }

@@ -1,21 +1,174 @@
-//! Conversion of the numbers by which the optimum of a problem is differentiated.
+//! Numbers of a scene that are sought, and numbers of a scene or a problem by which an optimum is differentiated.
 
+use crate::control::PEAK_VOLTAGE;
 use crate::control::problem::{BoundaryState, Control, Duration, Varied, VariedOf, WeightOf};
+use crate::files::json::document::Document;
 use crate::files::json::either::Scalar;
 use crate::files::json::objects::read_objects;
 use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::{Result, Scope, refuse};
-use crate::files::problem::at::{A_SOURCE, At};
-use crate::files::problem::free::add_others;
+use crate::files::problem::at::{A_SOURCE, At, SiUnit};
 use crate::files::scene::constants::{SceneConstant, WrittenScene};
-use crate::files::units::quantity::{Kind, Length, Quantity, SoughtConstant, Time, Voltage};
-use crate::model::system::{InputKind, Source};
-use crate::model::{NotSought, Parameter, SiUnit, check_parameters};
+use crate::files::units::quantity::{Kind, Length, Quantity, Ratio, SoughtConstant, Time, Voltage};
+use crate::model::{Constant, NotSought, Parameter, SiUnit as UnitOf, check_parameters, unit_of};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
+use std::path::Path;
+
+/// The parameters of a problem.
+pub(crate) fn parameters(
+    map: &FreeMap,
+    scene: &WrittenScene<'_>,
+    at: &At<'_>,
+) -> Result<Vec<Parameter>> {
+    let parameter = |path: &str, spec: &FreeSpec, at: &At<'_>| sought(path, spec, scene, at);
+    let parameters: Vec<Parameter> = at.each_named(map, parameter)?;
+    check_parameters(scene.system, &parameters).map_err(|NotSought { parameter, reason }| {
+        let place = at.key(&parameters[parameter].name);
+        place.wrong(reason, "a constant that can be sought")
+    })?;
+    Ok(parameters)
+}
+
+fn sought(
+    path: &str,
+    spec: &FreeSpec,
+    scene: &WrittenScene<'_>,
+    at: &Scope<'_>,
+) -> Result<Parameter> {
+    let (lower, upper) = (spec.min.si(), spec.max.si());
+    refuse!(if lower >= upper, at.key("max");
+        found spec.max, expected format!("a value larger than \"min\" {}", spec.min));
+    let texts = [&spec.min, &spec.max].map(|bound| serde_json::to_value(bound).unwrap_or_default());
+    let constant = scene.constant(path, [&texts[0], &texts[1]], [lower, upper]);
+    let mut constant = constant.map_err(|reason| match reason.value {
+        Some(bound) => reason.at(&at.key(["min", "max"][bound])),
+        None => reason.at(at),
+    })?;
+    add_others(&mut constant, &spec.also, [lower, upper], scene, at)?;
+    let SceneConstant {
+        followers,
+        from_si,
+        value,
+    } = constant;
+    let guess = spec.guess.as_ref().map(|guess| guess.si() * from_si);
+    let guess_or_value = guess.unwrap_or(value);
+    let (lower, upper) = (lower * from_si, upper * from_si);
+    if guess_or_value < lower || guess_or_value > upper {
+        let (place, found) = match &spec.guess {
+            Some(guess) => (at.key("guess"), guess.to_string()),
+            None => (
+                at.clone(),
+                "a value in the scene outside the bounds".to_owned(),
+            ),
+        };
+        let expected = format!("a guess from {} to {}", spec.min, spec.max);
+        return Err(place.wrong(found, expected));
+    }
+    if let Some(guess) = &spec.guess {
+        let text = serde_json::to_value(guess).unwrap_or_default();
+        let place = JsonPath::parse(path).unwrap_or_default();
+        let with = scene.with(&place, &text);
+        with.map_err(|reason| reason.at(&at.key("guess")))?;
+    }
+    Ok(Parameter {
+        name: path.to_owned(),
+        constants: followers,
+        lower,
+        upper,
+        guess: guess_or_value,
+    })
+}
+
+/// Adds what follows a number by the paths of other numbers, which are that one times a factor.
+fn add_others(
+    constant: &mut SceneConstant,
+    others: &BTreeMap<String, f64>,
+    bounds: [f64; 2],
+    scene: &WrittenScene<'_>,
+    at: &Scope<'_>,
+) -> Result<()> {
+    for (path, &factor) in others {
+        let place = at.key("also").key(path);
+        let si = bounds.map(|bound| bound * factor);
+        let values = si.map(Value::from);
+        let other = scene.constant(path, [&values[0], &values[1]], si);
+        let other = other.map_err(|reason| reason.at(&place))?;
+        let lists = [&constant.followers, &other.followers];
+        let [own, others] = lists.map(|list| unit_of(list, scene.system).symbol);
+        refuse!(if own != others, place;
+            found format!("a number in {others:?}"),
+            expected format!("one in {own:?}, as the number that it follows"));
+        let multiple = factor * other.from_si / constant.from_si;
+        let others = other.followers.into_iter();
+        let others = others.map(|follower| follower.of_multiple(multiple));
+        constant.followers.extend(others);
+    }
+    Ok(())
+}
+
+/// Entries that are read of a solution: values that were found, in SI units, by paths in the scene.
+#[derive(Debug, Deserialize)]
+struct FoundRecord {
+    #[serde(default)]
+    parameters: BTreeMap<String, f64>,
+}
+
+/// Two values that differ by less, relative to their size, are the same.
+const SAME: f64 = 1e-9;
+
+/// Refuses the voltages of a solution that was found with other constants than the scene has.
+pub(crate) fn check_solution(path: &Path, scene: &WrittenScene<'_>, at: &Scope<'_>) -> Result<()> {
+    let document = &Document::read(path)?;
+    let FoundRecord { parameters } = document.parse()?;
+    // The peak is a result, and no constant of a scene.
+    let constants = parameters.iter().filter(|(name, _)| *name != PEAK_VOLTAGE);
+    for (name, &found) in constants {
+        let place = JsonPath::parse(name).unwrap_or_default();
+        let mut other = scene
+            .with(&place, &Value::from(found))
+            .map_err(|reason| at.wrong(format!("{name:?}: {}", reason.found), reason.expected))?;
+        let mut system = scene.system.clone();
+        let differs = |constant: &Constant| {
+            let of_solution = constant.value(&mut other);
+            let of_scene = constant.value(&mut system);
+            match (of_solution, of_scene) {
+                (Some(a), Some(b)) => (a - b).abs() > SAME * a.abs(),
+                _ => of_solution != of_scene,
+            }
+        };
+        if let Some(constant) = Constant::all(scene.system).into_iter().find(differs) {
+            let unit = constant.unit(&system);
+            let of_scene = constant.value(&mut system).unwrap_or(f64::NAN) * unit.factor;
+            let symbol = unit.symbol;
+            let other = format!(
+                "a solution with {name} = {found} {symbol}, where the scene has {of_scene} {symbol}"
+            );
+            return Err(at.wrong(other, "the value of the solution in the scene"));
+        }
+    }
+    Ok(())
+}
+
+read_objects! {
+    /// A free parameter between bounds.
+    pub struct FreeSpec {
+        /// Lower bound, in the unit of the constant.
+        pub min: Quantity<SoughtConstant>,
+        /// Upper bound.
+        pub max: Quantity<SoughtConstant>,
+        /// Value at which the solver starts; the value of the scene where not written.
+        pub guess: Option<Quantity<SoughtConstant>>,
+        /// Other constants by their paths that are this one times a number.
+        pub also: BTreeMap<String, f64>,
+    }
+}
+
+/// Free parameters by their paths in the scene.
+pub type FreeMap = BTreeMap<String, FreeSpec>;
 
 /// Part of a number of a scene up to which it is put in its place to find what follows it.
 const BESIDE: f64 = 0.1;
@@ -138,36 +291,6 @@ fn check_tolerance(tolerance: Option<f64>, at: &Scope<'_>) -> Result<()> {
     Ok(())
 }
 
-/// Kind of a number where it has one, and its unit.
-struct Unit {
-    kind: Option<Kind>,
-    si: SiUnit,
-}
-
-impl Unit {
-    fn new(unit: (Kind, (&'static str, f64))) -> Self {
-        let (kind, (symbol, factor)) = unit;
-        Self {
-            kind: Some(kind),
-            si: SiUnit { symbol, factor },
-        }
-    }
-
-    fn of_source(source: &Source) -> Self {
-        match source.kind {
-            InputKind::Voltage => Self::new((Voltage::kind(), ("V", 1.0))),
-            other => {
-                let (symbol, size) = other.si();
-                let factor = size.recip();
-                Self {
-                    kind: None,
-                    si: SiUnit { symbol, factor },
-                }
-            }
-        }
-    }
-}
-
 /// A number of the problem.
 fn of_problem(
     path: &str,
@@ -184,17 +307,14 @@ fn of_problem(
         control,
         at,
     };
-    let (of, value, unit) = place.number()?.ok_or_else(|| {
+    let (of, value, (kind, (symbol, factor))) = place.number()?.ok_or_else(|| {
         let found = format!("{path:?}, which is no number of the problem that is offered");
         at.wrong(found, OFFERED)
     })?;
     let tolerance = match &spec.tolerance {
         None => None,
         Some(ToleranceSpec::Part(part)) => Some(part * value.abs()),
-        Some(ToleranceSpec::Size(size)) => Some(match &unit.kind {
-            Some(kind) => at.key("tolerance").value_as(size, kind)?,
-            None => size.si() / unit.si.factor,
-        }),
+        Some(ToleranceSpec::Size(size)) => Some(at.key("tolerance").value_as(size, &kind)?),
     };
     check_tolerance(tolerance, at)?;
     Ok(Varied {
@@ -202,12 +322,12 @@ fn of_problem(
         of,
         value,
         tolerance,
-        unit: unit.si,
+        unit: UnitOf { symbol, factor },
     })
 }
 
-/// Kind, value and unit of a number of the problem.
-type Number = (VariedOf, f64, Unit);
+/// A number of the problem, its value and its unit.
+type Number = (VariedOf, f64, (Kind, SiUnit));
 
 /// A path in `control`, and what it may lead to.
 struct Place<'a> {
@@ -246,18 +366,16 @@ impl Place<'_> {
         let objective = &self.control.objective;
         Ok(match (self.key(0), self.key(1)) {
             ("duration", "") => match self.control.duration {
-                Duration::Given(given) => Some((
-                    VariedOf::Duration,
-                    given,
-                    Unit::new((Time::kind(), ("s", 1e-3))),
-                )),
+                Duration::Given(given) => {
+                    Some((VariedOf::Duration, given, (Time::kind(), ("s", 1e-3))))
+                }
                 Duration::Free { .. } => None,
             },
             ("objective", "effort") => weight(objective.effort, WeightOf::Effort),
             ("objective", "rate") => weight(objective.rate, WeightOf::Rate),
             ("objective", "duration") => weight(objective.duration, WeightOf::Duration),
             ("voltage_bounds", "") => self.index().filter(|side| *side < 2).map(|side| {
-                let unit = Unit::new((Voltage::kind(), ("V", 1.0)));
+                let unit = (Voltage::kind(), ("V", 1.0));
                 let bound = self.control.voltage_bounds[side];
                 (VariedOf::VoltageBound(side), bound, unit)
             }),
@@ -266,7 +384,7 @@ impl Place<'_> {
                 let bounds = self.control.load_bounds.get(&source);
                 let side = self.index().filter(|side| *side < 2);
                 bounds.zip(side).map(|(bounds, side)| {
-                    let unit = Unit::of_source(&self.at.sources[source]);
+                    let unit = self.at.unit_of_source(source);
                     (VariedOf::LoadBound(source, side), bounds[side], unit)
                 })
             }
@@ -281,7 +399,7 @@ impl Place<'_> {
         Ok(match (key, &self.control.goal) {
             ("joint_angles", BoundaryState::JointAngles { angles, .. }) => {
                 let joint = self.at.joint(&self.name())?;
-                let unit = Unit::new(self.at.unit_of(joint));
+                let unit = self.at.unit_of(joint);
                 let value = angles.get(&joint);
                 value.map(|value| (VariedOf::GoalJoint(joint), *value, unit))
             }
@@ -294,7 +412,7 @@ impl Place<'_> {
                 let mut given = given.flat_map(|place| place.given());
                 let given = given.find(|(axis, _)| Some(*axis) == self.index());
                 given.map(|(axis, value)| {
-                    let unit = Unit::new((Length::kind(), ("m", 1e-3)));
+                    let unit = (Length::kind(), ("m", 1e-3));
                     (VariedOf::GoalPlace { marker, axis }, value, unit)
                 })
             }
@@ -311,7 +429,7 @@ impl Place<'_> {
                 _ => self.at.unit_of(joint),
             };
             let value = values.get(&joint).copied().unwrap_or(0.0);
-            Ok(Some((of(joint), value, Unit::new(unit))))
+            Ok(Some((of(joint), value, unit)))
         };
         match (key, &self.control.start) {
             ("joint_angles", BoundaryState::JointAngles { angles, .. }) => {
@@ -330,18 +448,13 @@ impl Place<'_> {
     /// A voltage or load at rest.
     fn voltage(&self, voltages: &[f64], of: fn(usize) -> VariedOf) -> Result<Number> {
         let source = self.at.source(&self.name(), A_SOURCE)?;
-        let unit = Unit::of_source(&self.at.sources[source]);
-        Ok((of(source), voltages[source], unit))
+        Ok((of(source), voltages[source], self.at.unit_of_source(source)))
     }
 }
 
 /// A weight of the objective.
 fn weight(value: f64, of: WeightOf) -> Option<Number> {
-    let si = SiUnit {
-        symbol: "",
-        factor: 1.0,
-    };
-    Some((VariedOf::Weight(of), value, Unit { kind: None, si }))
+    Some((VariedOf::Weight(of), value, (Ratio::kind(), ("", 1.0))))
 }
 
 read_objects! {

@@ -1,0 +1,401 @@
+//! Problems within a problem: the motions of a list, recordings whose scenes are other ones, parts of a disturbance.
+//!
+//! Each motion is the problem that remains with the keys of its entry in the place of those of `control`. The disturbance of a closed loop is the same
+//! simulation with values between those of no disturbance and those that the problem has.
+
+use std::collections::BTreeSet;
+
+use serde_json::Value;
+
+use crate::control::problem::{ChangedScene, Combined, Disturbed, Identification, Recording, Task};
+use crate::control::{Motion, Motions};
+use crate::files::changes::{Changes, word};
+use crate::files::json::document::Document;
+use crate::files::json::path::{JsonPath, Step};
+use crate::files::json::scope::{Result, Scope, refuse};
+use crate::files::json::set::{Override, value_at};
+use crate::files::json::tree::Json;
+use crate::files::problem::build::ProblemSpec;
+use crate::files::problem::control::COMMON;
+use crate::files::problem::feedback::DisturbanceSpec;
+use crate::files::problem::identify::IdentifySpec;
+use crate::files::study::ChangesSpec;
+use crate::model::Parameter;
+use crate::model::system::System;
+
+/// Keys of a motion that are none of a control problem.
+const OWN: [&str; 2] = ["name", "set"];
+/// Keys of a control problem with motions that no motion has.
+const OF_ALL: [&str; 3] = ["combine", "motions", "shared_inputs"];
+
+/// A motion as a problem of its own.
+pub(crate) struct MotionDocument<'a> {
+    pub(crate) name: String,
+    pub(crate) document: Document,
+    /// Constants of its scene, after those of all motions.
+    pub(crate) changes: Changes<'a>,
+}
+
+/// The motions of a problem, if it has a list of them.
+pub(crate) fn motions(document: &Document) -> Result<Option<Vec<MotionDocument<'_>>>> {
+    let Some(control) = document.entry("control") else {
+        return Ok(None);
+    };
+    let Some(list) = control.entry("motions") else {
+        return Ok(None);
+    };
+    let scope = Scope::of(document).key("control");
+    refuse!(if control.entry("sensitivity").is_some(), scope.key("sensitivity");
+        found "sensitivities of several motions", expected "a problem of one motion");
+    let scope = scope.key("motions");
+    refuse!(if list.first() != Some('['), scope; found list, expected "a list of motions");
+    refuse!(if list.parts().len() == 0, scope;
+        found "no motion", expected "a list of one motion or more");
+    let mut names = BTreeSet::new();
+    let each = list.parts().enumerate().map(|(number, written)| {
+        let motion = one(written, number, control, &scope.index(number))?;
+        refuse!(if !names.insert(motion.name.clone()), scope.index(number).key("name");
+            found format!("{:?} a second time", motion.name),
+            expected "another name for each motion");
+        Ok(motion)
+    });
+    each.collect::<Result<_, _>>().map(Some)
+}
+
+/// A motion by its entry in the list.
+fn one<'a>(
+    motion: Json<'_>,
+    number: usize,
+    control: Json<'_>,
+    scope: &Scope<'a>,
+) -> Result<MotionDocument<'a>> {
+    refuse!(if motion.first() != Some('{'), scope;
+        found motion, expected "a motion: an object with the keys that are other ones in it");
+    let is_of =
+        |list: &[&str], entry: &Json<'_>| entry.key().is_some_and(|key| list.contains(&&*key));
+    let mut common = motion.parts().filter(|entry| is_of(&COMMON, entry));
+    refuse!(if let Some(key) = common.find_map(Json::key), scope.key(&key);
+        found format!("the key {key:?} in a motion"),
+        expected "it beside \"motions\": all of them have it in common");
+    let is_shared = |entry: &Json<'_>| {
+        let is_own = entry.key().is_some_and(|key| motion.entry(&key).is_some());
+        !is_own && !is_of(&OF_ALL, entry)
+    };
+    let shared = control.parts().filter(is_shared);
+    let own = motion.parts().filter(|entry| !is_of(&OWN, entry));
+    let mut document = scope.document.clone();
+    let all = shared.chain(own.clone()).map(Json::node);
+    document.tree.set_entries("control", all.collect());
+    let place = JsonPath::default().key("control");
+    for key in own.filter_map(Json::key) {
+        document
+            .moved
+            .push((place.key(&key), scope.place.key(&key)));
+    }
+    let value = |key: &str| motion.entry(key)?.read().ok();
+    Ok(MotionDocument {
+        name: name(value("name"), number, &scope.key("name"))?,
+        changes: changes(value("set"), &scope.key("set"))?,
+        document,
+    })
+}
+
+/// The name of a motion, which is that of a folder.
+fn name(written: Option<Value>, number: usize, scope: &Scope<'_>) -> Result<String> {
+    let name = match written {
+        None | Some(Value::Null) => return Ok(format!("motion{}", number + 1)),
+        Some(Value::String(name)) => name,
+        Some(other) => return Err(scope.wrong(other.to_string(), "a name")),
+    };
+    let fits = |c: char| c.is_alphanumeric() || "_-".contains(c);
+    refuse!(if name.is_empty() || !name.chars().all(fits), scope;
+        found format!("{name:?}"),
+        expected "a name of letters, digits, _ and -, which is that of its folder");
+    Ok(name)
+}
+
+/// The constants of the scene that are other ones in a motion.
+fn changes<'a>(written: Option<Value>, scope: &Scope<'a>) -> Result<Changes<'a>> {
+    match written {
+        None | Some(Value::Null) => Ok(Changes::default()),
+        Some(Value::Object(entries)) => Changes::of_scene(
+            &entries,
+            scope,
+            "a place in the scene, such as scene.gravity; keys of \"control\" stand in the motion itself",
+        ),
+        Some(other) => Err(scope.wrong(
+            other.to_string(),
+            "an object of values by their places in the scene",
+        )),
+    }
+}
+
+/// The objective of all motions, the sum where none is written.
+fn combined(written: Option<&str>, scope: &Scope<'_>) -> Result<Combined> {
+    match written {
+        None | Some("\"sum\"" | "null") => Ok(Combined::Sum),
+        Some("\"worst\"") => Ok(Combined::Worst),
+        Some(other) => Err(scope.wrong(other, "\"sum\" or \"worst\"")),
+    }
+}
+
+/// The motions, if what they are to share can be shared.
+pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions> {
+    let of_all = Scope::of(document).key("control");
+    let scope = of_all.key("shared_inputs");
+    let key = |key: &str| document.entry("control")?.entry(key);
+    let shared_inputs: Vec<String> = match key("shared_inputs") {
+        None => Vec::new(),
+        Some(written) => written.read().map_err(|_| {
+            scope.wrong(
+                written.to_string(),
+                "a list of names of muscles, driven electrodes and loads",
+            )
+        })?,
+    };
+    let motions = Motions {
+        list,
+        shared_inputs,
+        combined: combined(key("combine").map(Json::written), &of_all.key("combine"))?,
+    };
+    scope.unique(&motions.shared_inputs, &[], |index| scope.index(index))?;
+    for (index, name) in motions.shared_inputs.iter().enumerate() {
+        check_input(&motions.list, name, &scope.index(index))?;
+    }
+    let other = motions.task().other_grid().map(|motion| motion.name);
+    refuse!(if let Some(name) = other.filter(|_| !motions.shared_inputs.is_empty()), scope;
+        found format!("inputs in common with the motion {name:?}, whose instants are other ones"),
+        expected "motions of one given \"duration\" and one number of \"intervals\"");
+    Ok(motions)
+}
+
+/// That an input is sought in all motions.
+fn check_input(list: &[Motion], name: &str, scope: &Scope<'_>) -> Result<()> {
+    for motion in list {
+        let sources = motion.system.sources();
+        let names: Vec<String> = sources.iter().map(|source| source.name.clone()).collect();
+        let source = scope.find(name, &names, "a muscle, driven electrode or load")?;
+        let is_sought = match sources[source].takes_voltage {
+            true => !motion.control.is_given(source),
+            false => motion.control.load_bounds.contains_key(&source),
+        };
+        refuse!(if !is_sought, scope;
+            found format!("{name:?}, which is not sought in the motion {:?}", motion.name),
+            expected "an input that is sought in all motions");
+    }
+    Ok(())
+}
+
+/// Changes of the scene for some recordings.
+pub(crate) struct SceneChanges<'a> {
+    pub(crate) set: ChangesSpec,
+    pub(crate) changes: Changes<'a>,
+    /// Place of the first one.
+    scope: Scope<'a>,
+}
+
+/// The changes that recordings and candidates of a problem name, each once.
+pub(crate) fn changed_scenes(document: &Document) -> Result<Vec<SceneChanges<'_>>> {
+    let mut out: Vec<SceneChanges<'_>> = Vec::new();
+    let Some(spec) = identify(document)? else {
+        return Ok(out);
+    };
+    let scope = Scope::of(document).key("identify");
+    let of = |key, sets: Vec<ChangesSpec>| {
+        let place = scope.key(key);
+        let each = sets.into_iter().enumerate();
+        each.map(move |(index, set)| (set, place.index(index).key("set")))
+            .collect::<Vec<_>>()
+    };
+    let recordings = spec.recordings.into_iter().map(|one| one.set).collect();
+    let candidates = spec.candidates.into_iter().map(|one| one.set).collect();
+    let all = [of("recordings", recordings), of("candidates", candidates)];
+    for (set, scope) in all.into_iter().flatten() {
+        if set.is_empty() || out.iter().any(|known| known.set == set) {
+            continue;
+        }
+        let expected = "a place in the scene, such as scene.gravity";
+        let changes = Changes::of_scene(&set, &scope, expected)?;
+        out.push(SceneChanges {
+            set,
+            changes,
+            scope,
+        });
+    }
+    Ok(out)
+}
+
+/// The identification that a problem asks for, if it does.
+fn identify(document: &Document) -> Result<Option<IdentifySpec>> {
+    match document.entry("identify") {
+        None => Ok(None),
+        Some(_) => Ok(document.parse::<ProblemSpec>()?.identify),
+    }
+}
+
+impl SceneChanges<'_> {
+    /// Adds the recordings of the changed scene to a task, in the order in which the problem names them.
+    pub(crate) fn add(
+        &self,
+        task: &mut Task,
+        system: System,
+        of_changed: Task,
+        document: &Document,
+    ) -> Result<()> {
+        let (Task::Identify(task), Task::Identify(other)) = (task, of_changed) else {
+            unreachable!("an entry \"identify\" is that task");
+        };
+        let numbers = |of: &Parameter| [of.lower, of.upper, of.guess];
+        for (sought, other) in task.parameters.iter().zip(&other.parameters) {
+            refuse!(if numbers(sought) != numbers(other), self.scope;
+                found format!("a change of {}, which is sought", sought.name),
+                expected "changes of numbers that are not sought");
+        }
+        let Identification {
+            parameters,
+            recordings,
+            candidates,
+            ..
+        } = *other;
+        let scene = Some(Box::new(ChangedScene { system, parameters }));
+        let changed = |one: Recording| Recording {
+            scene: scene.clone(),
+            ..one
+        };
+        task.recordings.extend(recordings.into_iter().map(changed));
+        task.candidates.extend(candidates.into_iter().map(changed));
+        if let Some(spec) = identify(document)? {
+            let names = spec.recordings.iter().map(|one| &one.name);
+            let candidates = spec.candidates.iter().map(|one| &one.name);
+            let names: Vec<&String> = names.into_iter().chain(candidates).collect();
+            let place = |one: &Recording| names.iter().position(|name| **name == one.name);
+            task.recordings.sort_by_key(place);
+            task.candidates.sort_by_key(place);
+        }
+        Ok(())
+    }
+}
+
+/// Most sizes.
+const MOST: usize = 20;
+
+/// The simulations of a problem whose controller names a disturbance, one for each of its sizes. `texts` are those of the problem and of its scene;
+/// `read` reads a document with changes.
+pub(crate) fn disturbed(
+    document: &Document,
+    texts: [&str; 2],
+    read: impl Fn(Document, &Changes<'_>) -> Result<(System, Task)>,
+) -> Result<Vec<Disturbed>> {
+    let Some(spec) = disturbance(document)? else {
+        return Ok(Vec::new());
+    };
+    let scope = Scope::of(document).key("simulate").key("controller");
+    let scope = scope.key("disturbance");
+    let sizes = sizes(&spec, &scope)?;
+    let place = scope.key("without");
+    refuse!(if spec.without.is_empty(), place;
+        found "nothing", expected "values without the disturbance, by their places");
+    let mut ends = Vec::new();
+    for (key, without) in &spec.without {
+        ends.push((key, without, with(key, texts, &place.key(key))?));
+    }
+    let mut out = Vec::new();
+    for size in sizes {
+        let mut changes = Changes::default();
+        for (key, without, with) in &ends {
+            let place = place.key(key);
+            let Some(value) = between(without, with, size) else {
+                let expected = format!("a value like that of the problem, {}", word(with));
+                return Err(place.wrong(word(without), expected));
+            };
+            changes.push(key, &value, place)?;
+        }
+        let none = JsonPath::parse("simulate.controller.disturbance").expect("a path");
+        let mut part = document.clone();
+        Override::new(none, Value::Null).apply(&mut part)?;
+        let (system, Task::Simulate(task)) = read(part, &changes)? else {
+            unreachable!("an entry \"simulate\" is that task");
+        };
+        out.push(Disturbed { size, system, task });
+    }
+    Ok(out)
+}
+
+/// The disturbance that a problem names, if it does.
+fn disturbance(document: &Document) -> Result<Option<DisturbanceSpec>> {
+    if document.entry("simulate").is_none() {
+        return Ok(None);
+    }
+    let simulate = document.parse::<ProblemSpec>()?.simulate;
+    Ok(simulate.and_then(|one| one.controller?.disturbance))
+}
+
+fn sizes(spec: &DisturbanceSpec, scope: &Scope<'_>) -> Result<Vec<f64>> {
+    let place = scope.key("sizes");
+    let Some(sizes) = &spec.sizes else {
+        return Ok(vec![0.0, 0.25, 0.5, 1.0]);
+    };
+    refuse!(if !(2..=MOST).contains(&sizes.len()), place;
+        found sizes.len(), expected format!("2 to {MOST} sizes"));
+    for (i, size) in sizes.iter().enumerate() {
+        let before = i.checked_sub(1).map_or(f64::NEG_INFINITY, |i| sizes[i]);
+        refuse!(if !(size.is_finite() && *size >= 0.0 && *size > before), place.index(i);
+            found size,
+            expected "sizes from 0 on, the smallest first, of which 1 is that of the problem");
+    }
+    Ok(sizes.clone())
+}
+
+/// The value that a problem has in a place.
+fn with(key: &str, texts: [&str; 2], place: &Scope<'_>) -> Result<Value> {
+    let wrong = || {
+        let expected = "a place in the problem or its scene that has a value, such as scene.materials.silicone.shear_modulus";
+        place.wrong(format!("the key {key:?}"), expected)
+    };
+    let path = JsonPath::parse(key).ok_or_else(wrong)?;
+    let [problem, scene] = texts;
+    let found = match path.0.as_slice() {
+        [Step::Key(first), rest @ ..] if first == "scene" => {
+            value_at(scene, &JsonPath(rest.to_vec()))
+        }
+        _ => value_at(problem, &path),
+    };
+    found.ok_or_else(wrong)
+}
+
+/// A value a part of the way from one to another: numbers, numbers with the same unit, lists of them; a number 0 has any unit.
+fn between(from: &Value, to: &Value, part: f64) -> Option<Value> {
+    if let (Value::Array(a), Value::Array(b)) = (from, to) {
+        let each = a.iter().zip(b).map(|(a, b)| between(a, b, part));
+        return (a.len() == b.len())
+            .then(|| each.collect::<Option<Vec<Value>>>())?
+            .map(Value::Array);
+    }
+    let (a, of_a) = quantity(from)?;
+    let (b, of_b) = quantity(to)?;
+    let unit = match (of_a, of_b) {
+        (Some(a), Some(b)) if a != b => return None,
+        (None, Some(_)) if a != 0.0 => return None,
+        (Some(_), None) if b != 0.0 => return None,
+        (a, b) => a.or(b),
+    };
+    let value = a + part * (b - a);
+    // The ends as they are written.
+    let value = if part == 1.0 { b } else { value };
+    match unit {
+        Some(unit) => Some(format!("{value} {unit}").into()),
+        None => serde_json::Number::from_f64(value).map(Value::Number),
+    }
+}
+
+/// A number and its unit.
+fn quantity(value: &Value) -> Option<(f64, Option<&str>)> {
+    match value {
+        Value::Number(number) => Some((number.as_f64()?, None)),
+        Value::String(text) => {
+            let (number, unit) = text.trim().split_once(' ')?;
+            Some((number.parse().ok()?, Some(unit.trim())))
+        }
+        _ => None,
+    }
+}
