@@ -54,7 +54,6 @@ pub(crate) use json::document::Document;
 pub(crate) use json::entries::Entries;
 pub use json::error::{SceneError, lines, message, note, printable, printable_json};
 pub(crate) use json::layout::lay_out;
-pub(crate) use json::path::JsonPath;
 pub(crate) use json::scope::Scope;
 pub(crate) use json::source::is_standard_input;
 pub(crate) use scene::build::LONGEST_CHAIN;
