@@ -1,14 +1,13 @@
 //! Arguments of the command line: commands, options and their meaning.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::choices::{Engine, Export, View};
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use clap_complete::Shell;
-use proboscis::app::{CommandInput, PageWanted, ProgressDisplay};
+use proboscis::app::{CommandInput, PageWanted, ProgressDisplay, RunIn};
 use proboscis::report::{Figures, quoting};
-use proboscis::study::StudyRequest;
-use proboscis::sweep::{Shard, SweepRequest};
+use proboscis::sweep::Shard;
 use proboscis::workflow::accuracy::AccuracyTarget;
 
 /// Simulation and optimal control of robots driven by dielectric elastomer muscles.
@@ -182,14 +181,23 @@ pub(crate) struct Variants {
 }
 
 impl Variants {
-    pub(crate) fn request(self) -> StudyRequest {
-        StudyRequest {
-            command: typed(),
-            input: self.study,
-            output: self.output,
-            runs: self.runs.map(usize::from),
-            progress: shown(self.quiet),
-        }
+    /// Its request, and the number of runs.
+    pub(crate) fn request(self) -> (CommandInput, Option<usize>) {
+        let request = of_variants("studies", self.study, self.output, self.quiet);
+        (request, self.runs.map(usize::from))
+    }
+}
+
+/// A request on the file of several variants, with results in a folder of that name where none is given.
+fn of_variants(kind: &str, input: PathBuf, output: Option<PathBuf>, quiet: bool) -> CommandInput {
+    let name = input.file_stem().unwrap_or_default();
+    let own = Path::new("results").join(kind).join(name);
+    CommandInput {
+        command: typed(),
+        input,
+        output: Some(output.unwrap_or(own)),
+        progress: shown(quiet),
+        ..CommandInput::default()
     }
 }
 
@@ -215,16 +223,13 @@ pub(crate) struct Sweep {
 }
 
 impl Sweep {
-    pub(crate) fn request(self) -> SweepRequest {
-        SweepRequest {
-            command: typed(),
-            input: self.sweep,
-            output: self.output,
-            shard: self.shard,
-            run_in: self.engine.run_in(),
+    /// Its request, and the part of the variants that is solved with an engine.
+    pub(crate) fn request(self) -> (CommandInput, Shard, RunIn) {
+        let request = CommandInput {
             max_seconds: self.max_seconds,
-            progress: shown(self.quiet),
-        }
+            ..of_variants("sweeps", self.sweep, self.output, self.quiet)
+        };
+        (request, self.shard, self.engine.run_in())
     }
 }
 

@@ -149,11 +149,13 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
         }
         Command::Study(variants) => {
             stop::install(tell);
-            study(&variants.request())
+            let (request, runs) = variants.request();
+            study(&request, runs)
         }
         Command::Sweep(variants) => {
             stop::install(tell);
-            sweep(&variants.request())
+            let (request, shard, run_in) = variants.request();
+            sweep(&request, shard, run_in)
         }
         Command::Report { results, output } => app::compare(&typed(), &results, &output),
         Command::Expand { scene } => app::expand(&scene).map(text),

@@ -2,13 +2,14 @@
 
 use std::path::PathBuf;
 
-use proboscis::app::{ProgressDisplay, RunIn};
-use proboscis::study::{StudyRequest, study as run_study};
-use proboscis::sweep::{Shard, SweepRequest, sweep as run_sweep};
+use proboscis::app::{CommandInput, RunIn};
+use proboscis::study::study as run_study;
+use proboscis::sweep::{Shard, sweep as run_sweep};
 use pyo3::prelude::*;
 
 use crate::background::{Outcome, supervised};
 use crate::mistake;
+use crate::run::request;
 
 /// Solves the variants of a sweep that are not solved yet, and writes the folder.
 #[pyfunction]
@@ -24,16 +25,11 @@ pub(crate) fn sweep(
     let shard: Shard = shard.parse().map_err(|expected: String| {
         mistake(py, format!("shard: found {shard:?}, {expected}"), "shard")
     })?;
-    let request = SweepRequest {
-        command,
-        input,
-        output: Some(folder),
-        shard,
-        run_in: RunIn::Here,
+    let request = CommandInput {
         max_seconds,
-        progress: ProgressDisplay::Never,
+        ..request(command, input, Some(folder))
     };
-    supervised(py, None, move |_| run_sweep(&request))
+    supervised(py, None, move |_| run_sweep(&request, shard, RunIn::Here))
 }
 
 /// Runs a study and writes the folder.
@@ -45,12 +41,6 @@ pub(crate) fn study(
     command: String,
     runs: Option<usize>,
 ) -> PyResult<Outcome> {
-    let request = StudyRequest {
-        command,
-        input,
-        output: Some(folder),
-        runs,
-        progress: ProgressDisplay::Never,
-    };
-    supervised(py, None, move |_| run_study(&request))
+    let request = request(command, input, Some(folder));
+    supervised(py, None, move |_| run_study(&request, runs))
 }

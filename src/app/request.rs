@@ -9,7 +9,7 @@ use crate::workflow::accuracy::AccuracyTarget;
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
-/// A command on a problem file.
+/// A command on a problem file, or on the file of a study or a sweep.
 #[derive(Clone, Debug, Default)]
 pub struct CommandInput {
     /// The command as typed.

@@ -17,13 +17,10 @@ mod record;
 pub mod schedule;
 pub mod table;
 
-pub use record::StudyRequest;
-
 use std::path::Path;
 use std::time::Instant;
 
-use crate::app::{CommandError, CommandOutput, make_folder};
-use crate::report::origin::Origin;
+use crate::app::{CommandError, CommandInput, CommandOutput, make_folder};
 use crate::report::page::of_plots;
 use crate::report::{PageContent, atomic};
 use crate::study::compare::{Judged, judge, moved_marker};
@@ -32,16 +29,16 @@ use crate::study::measure::StudyTask;
 use crate::study::read::read_study;
 use crate::study::schedule::{Results, bar, look, time};
 
-/// Runs a study and writes its folder; one that Ctrl-C ends early is kept as far as it went.
+/// Runs a study, with this number of timed runs of each point in place of that of the file, and writes its folder; one that Ctrl-C ends early is kept as far as it went.
 ///
 /// # Errors
 /// The study or one of its problems is wrong, or the results cannot be written.
-pub fn study(request: &StudyRequest) -> Result<CommandOutput, CommandError> {
+pub fn study(request: &CommandInput, runs: Option<usize>) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
     let study = read_study(&request.input)?;
     let folder = request.folder();
     make_folder(&folder)?;
-    let runs = request.runs.unwrap_or(study.runs);
+    let runs = runs.unwrap_or(study.runs);
     let bar = bar(&study, runs, request.progress);
     let mut results = look(&study, &bar);
     if let Some((name, apart)) = moved_marker(&results) {
@@ -59,7 +56,7 @@ pub fn study(request: &StudyRequest) -> Result<CommandOutput, CommandError> {
     bar.finish_and_clear();
     let judged = judge(&results);
     let said = conclusion(&results, &judged);
-    let table = write(&folder, request, &results, &judged, &said)?;
+    let table = write(request, runs, &results, &judged, &said)?;
     Ok(command_output(
         &results,
         &format!("{table}{said}\n"),
@@ -70,15 +67,15 @@ pub fn study(request: &StudyRequest) -> Result<CommandOutput, CommandError> {
 
 /// Writes all files; the table to read.
 fn write(
-    folder: &Path,
-    request: &StudyRequest,
+    request: &CommandInput,
+    runs: usize,
     results: &Results<'_>,
     judged: &[Judged],
     said: &str,
 ) -> Result<String, CommandError> {
     let study = results.study;
-    let with_ipopt = study.asked == StudyTask::Control;
-    let origin = Origin::new(&request.command, &request.input, with_ipopt);
+    let folder = request.folder();
+    let origin = request.origin(study.asked == StudyTask::Control);
     let put = |name: &str, text: &str| atomic::write(&folder.join(name), text.as_bytes());
     let (mut figures, mut plots) = (Vec::new(), Vec::new());
     for judged in judged {
@@ -120,7 +117,7 @@ fn write(
         &of_plots(&study.title, &said_of_all, &origin),
     )?;
     let path = folder.join("study.json");
-    record::write(&path, request, results, judged, said)?;
+    record::write(&path, request, runs, results, judged, said)?;
     Ok(text)
 }
 

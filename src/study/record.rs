@@ -1,6 +1,6 @@
 //! `study.json`: every point with its input, its seconds and its errors, and the references of these; SI units.
 
-use crate::app::ProgressDisplay;
+use crate::app::CommandInput;
 use crate::files::Entries;
 use crate::ipopt;
 use crate::report::atomic::WriteError;
@@ -15,7 +15,7 @@ use crate::study::schedule::{Done, Results};
 use crate::workflow::parallel_map::cores;
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Machine of the runs.
 #[derive(Debug, Serialize)]
@@ -30,7 +30,8 @@ pub(super) struct Machine {
 /// Writes the file.
 pub(super) fn write(
     path: &Path,
-    request: &StudyRequest,
+    request: &CommandInput,
+    runs: usize,
     results: &Results<'_>,
     judged: &[Judged],
     conclusion: &str,
@@ -57,7 +58,7 @@ pub(super) fn write(
         .with("status", status)
         .with("conclusion", conclusion)
         // Timed runs that were asked for.
-        .with("runs", request.runs.unwrap_or(study.runs))
+        .with("runs", runs)
         .with("markers", &study.markers)
         // Instants that all points have, as parts of the duration.
         .with("instants", common(results))
@@ -178,30 +179,5 @@ pub(super) fn machine() -> Machine {
         processor: name.map(|(_, name)| name.trim().to_owned()),
         cores: cores(),
         system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
-    }
-}
-
-/// A command on a study file.
-#[derive(Clone, Debug)]
-pub struct StudyRequest {
-    /// The command as typed.
-    pub command: String,
-    /// The study file as typed.
-    pub input: PathBuf,
-    /// Folder for the results; `results/studies/<name of the study>` where not given.
-    pub output: Option<PathBuf>,
-    /// Timed runs of each point, in place of those of the file.
-    pub runs: Option<usize>,
-    /// Display of progress.
-    pub progress: ProgressDisplay,
-}
-
-impl StudyRequest {
-    /// Folder for the results.
-    pub fn folder(&self) -> PathBuf {
-        self.output.clone().unwrap_or_else(|| {
-            let stem = self.input.file_stem().unwrap_or_default();
-            PathBuf::from("results/studies").join(stem)
-        })
     }
 }

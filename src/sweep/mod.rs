@@ -8,31 +8,34 @@ mod table;
 mod variant_end;
 
 use crate::app::{
-    Batch, CommandError, CommandInput, CommandOutput, Ended, Found, ProgressDisplay, RunIn,
-    check_run_in, found, make_folder, run_all,
+    Batch, CommandError, CommandInput, CommandOutput, Ended, Found, RunIn, check_run_in, found,
+    make_folder, run_all,
 };
 use crate::report::atomic;
-use crate::report::origin::Origin;
 use crate::report::table::cells_csv;
 use crate::stop;
 use crate::sweep::read::{Sweep, Variant, read_sweep};
 use crate::sweep::variant_end::VariantEnd;
 use std::collections::{BTreeMap, BTreeSet};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::str::FromStr;
 use std::time::Instant;
 
 /// Most notes of one kind.
 const NOTES: usize = 10;
 
-/// Solves the variants of a sweep that are not solved yet, and writes the table of all.
+/// Solves the variants of a sweep in a shard that are not solved yet, and writes the table of all.
 ///
 /// # Errors
 /// The sweep or the problems of all variants are wrong, or the results cannot be written.
-pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
+pub fn sweep(
+    request: &CommandInput,
+    shard: Shard,
+    run_in: RunIn,
+) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
     let sweep = read_sweep(&request.input)?;
-    check_run_in(request.run_in)?;
+    check_run_in(run_in)?;
     let folder = request.folder();
     make_folder(&folder)?;
 
@@ -49,26 +52,20 @@ pub fn sweep(request: &SweepRequest) -> Result<CommandOutput, CommandError> {
             Some(message) => Some(VariantEnd::without_results("refused", message)),
             None => before.of(variant, &variant.folder(&folder)),
         };
-        if kept.is_none() && request.shard.has(index) {
+        if kept.is_none() && shard.has(index) {
             todo.push(variant);
         }
         // What is to be solved has not started yet.
         let end = kept.unwrap_or_else(|| VariantEnd::without_results("not_started", ""));
         ends.insert(identity, end);
     }
-    solve(request, &sweep, &todo, began, &mut ends)?;
+    let run_in = run_in.of_tasks(sweep.run_at_once);
+    solve(request, &sweep, &todo, run_in, began, &mut ends)?;
 
     let identities = sweep.variants.iter().map(|one| one.identity.as_str());
     let ends: Vec<&VariantEnd> = identities.map(|identity| &ends[identity]).collect();
     write(request, &sweep, &ends, &folder)?;
-    Ok(command_output(
-        request.shard,
-        &sweep,
-        &ends,
-        before,
-        &folder,
-        began,
-    ))
+    Ok(command_output(shard, &sweep, &ends, before, &folder, began))
 }
 
 /// Results that the folders of the variants held before.
@@ -101,9 +98,10 @@ impl Before {
 
 /// Solves variants, each as a run that is made once.
 fn solve<'a>(
-    request: &SweepRequest,
+    request: &CommandInput,
     sweep: &'a Sweep,
     todo: &[&'a Variant],
+    run_in: RunIn,
     began: Instant,
     ends: &mut BTreeMap<&'a str, VariantEnd>,
 ) -> Result<(), CommandError> {
@@ -120,7 +118,7 @@ fn solve<'a>(
     let batch = Batch {
         runs: &runs,
         text: None,
-        run_in: request.run_in.of_tasks(sweep.run_at_once),
+        run_in,
         folder: &results,
         max_seconds: request.max_seconds,
         began,
@@ -133,12 +131,12 @@ fn solve<'a>(
 
 /// Writes table and page.
 fn write(
-    request: &SweepRequest,
+    request: &CommandInput,
     sweep: &Sweep,
     ends: &[&VariantEnd],
     folder: &Path,
 ) -> Result<(), CommandError> {
-    let origin = Origin::new(&request.command, &request.input, true);
+    let origin = request.origin(true);
     let table = table::table(sweep, ends);
     let csv = cells_csv(&table, &origin);
     atomic::write(&folder.join("sweep.csv"), csv.as_bytes())?;
@@ -203,35 +201,6 @@ fn first(mut notes: Vec<String>) -> Vec<String> {
         notes.push(format!("and {more} more like this"));
     }
     notes
-}
-
-/// A command on a sweep file.
-#[derive(Clone, Debug)]
-pub struct SweepRequest {
-    /// The command as typed.
-    pub command: String,
-    /// The sweep file as typed.
-    pub input: PathBuf,
-    /// Folder for the results; `results/sweeps/<name of the sweep>` where not given.
-    pub output: Option<PathBuf>,
-    /// The part of the variants that is solved.
-    pub shard: Shard,
-    /// Processes or threads in which variants are solved.
-    pub run_in: RunIn,
-    /// Seconds that the whole command may take.
-    pub max_seconds: Option<f64>,
-    /// Display of progress.
-    pub progress: ProgressDisplay,
-}
-
-impl SweepRequest {
-    /// Folder for the results.
-    pub fn folder(&self) -> PathBuf {
-        self.output.clone().unwrap_or_else(|| {
-            let stem = self.input.file_stem().unwrap_or_default();
-            PathBuf::from("results/sweeps").join(stem)
-        })
-    }
 }
 
 /// Each n-th variant, from the i-th one: what one of n machines does.
