@@ -185,7 +185,7 @@ impl Solved<'_> {
             .plots
             .push(convergence(&optimum.solution.iterations));
         let list = &result.sensitivities;
-        let bars = sensitivities::bars_of_page(list).map(|plot| ("Sensitivities", plot));
+        let bars = sensitivities::bars(list).map(|plot| ("Sensitivities", plot));
         let voltages = sensitivities::voltages(&model.system, &result.trajectory, list);
         let voltages = voltages.map(|plot| ("Voltages with tolerances", plot));
         let plots = bars.into_iter().chain(voltages);
@@ -241,7 +241,8 @@ fn write_sensitivities(
     let is_any = !list.is_empty();
     let table = is_any.then(|| sensitivities::table(system, &result.trajectory, list, origin));
     files.put("sensitivities.csv", table)?;
-    files.put("sensitivities.svg", sensitivities::svg(list, origin))?;
+    let bars = sensitivities::bars(list).map(|plot| plot.svg(origin));
+    files.put("sensitivities.svg", bars)?;
     let voltages = sensitivities::voltages(system, &result.trajectory, list);
     let voltages = voltages.map(|plot| plot.svg(origin));
     files.put("voltages_tolerances.svg", voltages)

@@ -1,6 +1,6 @@
 //! Curves over a pair of axes: the plot that the other figures share.
 
-use crate::report::axes::{Axis, Extent, Scale};
+use crate::report::axes::{Axis, Extent, Scale, Ticks};
 use crate::report::canvas::{self, Align, Canvas, CanvasPoint, Stroke, rectangle, text_width};
 use crate::report::origin::Origin;
 use crate::report::style::{self, Colour, Dash};
@@ -97,7 +97,7 @@ pub struct LinePlot {
     pub title: String,
     /// Horizontal axis.
     pub x: Axis,
-    /// Vertical axis.
+    /// Vertical axis; without a label it has no ticks.
     pub y: Axis,
     /// The curves, later ones on top.
     pub series: Vec<Series>,
@@ -252,7 +252,10 @@ impl PlotFrame<'_, '_> {
             canvas.line(&[[at, bottom], [at, bottom + 2.2]], tick);
         }
 
-        let ticks = y.ticks(self.ranges[1], (self.size[1] / 42.0).max(2.0));
+        let ticks = match y.label.is_empty() {
+            true => Ticks::default(),
+            false => y.ticks(self.ranges[1], (self.size[1] / 42.0).max(2.0)),
+        };
         for (position, label) in &ticks.major {
             let at = self.vertical(*position);
             canvas.line(&[[left, at], [right, at]], grid);
