@@ -17,7 +17,7 @@ use crate::report::paraview::{Field, Series, UnstructuredGrid};
 /// Maximum number of instants written.
 const MOST: usize = 200;
 /// Folder of the instants.
-const FOLDER: &str = "fields";
+pub(super) const FOLDER: &str = "fields";
 
 /// Writes the fields of a motion instant by instant; the number of instants written, zero where nothing is elastic.
 pub(super) fn write(
@@ -30,24 +30,13 @@ pub(super) fn write(
         return Ok(0);
     }
     let instants = spread(discrete.z.len(), MOST);
-    let mut series = Series::new("trajectory", origin).within(FOLDER, files)?;
+    let mut series = Series::new("trajectory", FOLDER, origin, files)?;
     let mut states = SolidStates::new(model, discrete);
     for &k in &instants {
-        let blocks: Vec<Block<'_>> = states.at(k);
-        let grids: Vec<UnstructuredGrid<'_>> = blocks.iter().map(Block::grid).collect();
-        series.add(discrete.times[k] / 1e3, &grids, files)?;
+        series.add(discrete.times[k] / 1e3, &states.at(k), files)?;
     }
     series.finish(files)?;
-    // Those of a longer motion that stood here before.
-    remove_from(instants.len(), files);
     Ok(instants.len())
-}
-
-/// Removes the files from a number on of a motion that stood here before.
-pub(super) fn remove_from(first: usize, files: &mut FileSet) {
-    for number in first..=MOST {
-        files.remove(format!("{FOLDER}/{number:04}.vtu"));
-    }
 }
 
 /// Largest reference field −∂φ/∂X of an element in V/m at an instant; `None` where there is none.
@@ -128,71 +117,54 @@ impl<'m> SolidStates<'m> {
         }
     }
 
-    fn at(&mut self, k: usize) -> Vec<Block<'m>> {
+    /// The blocks at an instant, as shown.
+    fn at(&mut self, k: usize) -> Vec<UnstructuredGrid<'m>> {
         let model = self.model;
         let state = self.place(k);
         let blocks = 0..model.solids.len();
-        blocks.map(|b| Block::new(model, b, &state)).collect()
+        blocks.map(|b| grid(model, b, &state)).collect()
     }
 }
 
-/// Block at an instant, as shown.
-struct Block<'m> {
-    hexahedra: &'m [[usize; 8]],
-    points: Vec<Vector>,
-    point_data: Vec<Field<'static>>,
-    cell_data: Vec<Field<'static>>,
-}
-
-impl<'m> Block<'m> {
-    fn new(model: &'m Model, number: usize, state: &SolidState<'_>) -> Self {
-        let block = &model.solids[number];
-        let mesh = &block.solid.mesh;
-        let places = block.places(&state.here.x);
-        let potentials = block.potentials(state.scalars);
-        let velocities = state.there.map(|(there, time)| {
-            let others = block.places(&there.x);
-            let pairs = others.iter().zip(&places);
-            pairs
-                .map(|(there, here)| (there - here) / time)
-                .collect::<Vec<_>>()
-        });
-        let moved = places.iter().zip(&mesh.nodes);
-        let moved = moved.flat_map(|(x, at)| components(&(x - at), 1e-3));
-        let mut point_data = vec![field("displacement [m]", 3, moved)];
-        if let Some(velocities) = &velocities {
-            let values = velocities.iter().flat_map(|v| components(v, 1.0));
-            point_data.push(field("velocity [m/s]", 3, values));
-        }
-        if block.terminals.iter().any(Option::is_some) {
-            let known = potentials.iter().zip(&block.terminals);
-            let values = known.map(|(phi, terminal)| terminal.map_or(f64::NAN, |_| *phi));
-            point_data.push(field("potential [V]", 1, values));
-        }
-        let is_dielectric = block.is_dielectric.contains(&true);
-        let elements = 0..block.shapes.len();
-        let branches = elements.map(|e| model.branch_stress(number, e, state.here));
-        let branches = branches.collect::<Vec<_>>();
-        let velocities = velocities.as_deref();
-        let cell_data = cells(number, block, &places, &potentials, velocities, &branches);
-        Self {
-            hexahedra: &mesh.hexahedra,
-            points: places.iter().map(|x| x * 1e-3).collect(),
-            point_data,
-            cell_data: cell_data
-                .into_iter()
-                .filter(|field| is_dielectric || !field.name.starts_with("electric"))
-                .collect(),
-        }
+/// A block at an instant, as shown.
+fn grid<'m>(model: &'m Model, number: usize, state: &SolidState<'_>) -> UnstructuredGrid<'m> {
+    let block = &model.solids[number];
+    let mesh = &block.solid.mesh;
+    let places = block.places(&state.here.x);
+    let potentials = block.potentials(state.scalars);
+    let velocities = state.there.map(|(there, time)| {
+        let others = block.places(&there.x);
+        let pairs = others.iter().zip(&places);
+        pairs
+            .map(|(there, here)| (there - here) / time)
+            .collect::<Vec<_>>()
+    });
+    let moved = places.iter().zip(&mesh.nodes);
+    let moved = moved.flat_map(|(x, at)| components(&(x - at), 1e-3));
+    let mut point_data = vec![field("displacement [m]", 3, moved)];
+    if let Some(velocities) = &velocities {
+        let values = velocities.iter().flat_map(|v| components(v, 1.0));
+        point_data.push(field("velocity [m/s]", 3, values));
     }
-
-    fn grid(&self) -> UnstructuredGrid<'_> {
-        UnstructuredGrid {
-            points: &self.points,
-            hexahedra: self.hexahedra,
-            point_data: &self.point_data,
-            cell_data: &self.cell_data,
-        }
+    if block.terminals.iter().any(Option::is_some) {
+        let known = potentials.iter().zip(&block.terminals);
+        let values = known.map(|(phi, terminal)| terminal.map_or(f64::NAN, |_| *phi));
+        point_data.push(field("potential [V]", 1, values));
+    }
+    let is_dielectric = block.is_dielectric.contains(&true);
+    let elements = 0..block.shapes.len();
+    let branches = elements.map(|e| model.branch_stress(number, e, state.here));
+    let branches = branches.collect::<Vec<_>>();
+    let velocities = velocities.as_deref();
+    let cell_data = cells(number, block, &places, &potentials, velocities, &branches);
+    UnstructuredGrid {
+        points: places.iter().map(|x| x * 1e-3).collect(),
+        hexahedra: &mesh.hexahedra,
+        point_data,
+        cell_data: cell_data
+            .into_iter()
+            .filter(|field| is_dielectric || !field.name.starts_with("electric"))
+            .collect(),
     }
 }
 

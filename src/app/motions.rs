@@ -1,7 +1,7 @@
 //! Several motions from file to folder: each in a folder of its own within that of the results, and what they have in common, once.
 
 use crate::app::error::CommandError;
-use crate::app::fields;
+use crate::app::fields::FOLDER;
 use crate::app::kept::overwrite_check::{make_folder, make_folder_of};
 use crate::app::kept::partial_result::{EARLIER, STOPPED};
 use crate::app::kept::{solution_file, unfinished};
@@ -18,6 +18,7 @@ use crate::report::atomic;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::page::compared;
+use crate::report::paraview::remove_from;
 use crate::tasks::{MotionsResult, solve_motions};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -97,7 +98,7 @@ impl Together<'_> {
     fn write(&self, began: Instant) -> Result<f64, CommandError> {
         let mut files = FileSet::in_folder(self.folder);
         EARLIER.iter().for_each(|name| files.remove(name));
-        fields::remove_from(0, &mut files);
+        remove_from(0, FOLDER, &mut files);
         let names = || self.motions.list.iter().map(|motion| &motion.name);
         let folders: Vec<PathBuf> = names().map(|name| self.folder.join(name)).collect();
         let is_written = |folder: &PathBuf| folder.join(SIDE_BY_SIDE).is_file();

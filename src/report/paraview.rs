@@ -10,6 +10,7 @@ use flate2::write::ZlibEncoder;
 use nalgebra::Vector3;
 use std::borrow::Cow;
 use std::fmt::Write;
+use std::fs;
 use std::io::Write as _;
 
 use crate::report::atomic::{self, WriteError};
@@ -39,13 +40,13 @@ pub struct Field<'a> {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct UnstructuredGrid<'a> {
     /// Places of the points.
-    pub points: &'a [Vector3<f64>],
+    pub points: Vec<Vector3<f64>>,
     /// Points of each cell, ordered as in [`Mesh::hexahedra`](crate::mesh::Mesh::hexahedra).
     pub hexahedra: &'a [[usize; 8]],
     /// Quantities at the points.
-    pub point_data: &'a [Field<'a>],
+    pub point_data: Vec<Field<'a>>,
     /// Quantities in the cells.
-    pub cell_data: &'a [Field<'a>],
+    pub cell_data: Vec<Field<'a>>,
 }
 
 /// Data of the points or of the cells of a grid.
@@ -56,10 +57,10 @@ enum At {
 }
 
 impl<'a> UnstructuredGrid<'a> {
-    fn fields(&self, at: At) -> &'a [Field<'a>] {
+    fn fields(&self, at: At) -> &[Field<'a>] {
         match at {
-            At::Points => self.point_data,
-            At::Cells => self.cell_data,
+            At::Points => &self.point_data,
+            At::Cells => &self.cell_data,
         }
     }
 
@@ -105,42 +106,34 @@ pub fn pvd(instants: &[(f64, String)], origin: &Origin) -> String {
     text
 }
 
-/// A motion in a folder: `name_0000.vtu`, `name_0001.vtu`, … and `name.pvd`, which is the file to open.
-///
-/// With a folder for the instants they are `folder/0000.vtu`, `folder/0001.vtu`, …
+/// A motion: `folder/0000.vtu`, `folder/0001.vtu`, … and `name.pvd`, which is the file to open.
 #[derive(Clone, Debug)]
 pub struct Series<'a> {
-    name: String,
-    /// Folder of the instants within `folder`.
-    within: Option<String>,
+    name: &'static str,
+    folder: &'static str,
     origin: &'a Origin,
     instants: Vec<(f64, String)>,
 }
 
 impl<'a> Series<'a> {
-    /// An empty series.
-    pub fn new(name: &str, origin: &'a Origin) -> Self {
-        Self {
-            name: name.to_owned(),
-            within: None,
-            origin,
-            instants: Vec::new(),
-        }
-    }
-
-    /// The same with the instants in a folder of their own, which is made where it is missing.
+    /// An empty series, whose folder is made where it is missing.
     ///
     /// # Errors
     /// The folder cannot be made.
-    pub fn within(self, folder: &str, files: &FileSet) -> Result<Self, WriteError> {
+    pub fn new(
+        name: &'static str,
+        folder: &'static str,
+        origin: &'a Origin,
+        files: &FileSet,
+    ) -> Result<Self, WriteError> {
         let path = files.folder().join(folder);
-        if let Err(cause) = std::fs::create_dir_all(&path) {
-            return Err(WriteError { path, cause });
-        }
+        fs::create_dir_all(&path).map_err(WriteError::at(&path))?;
         atomic::tidy(&path);
         Ok(Self {
-            within: Some(folder.to_owned()),
-            ..self
+            name,
+            folder,
+            origin,
+            instants: Vec::new(),
         })
     }
 
@@ -166,22 +159,33 @@ impl<'a> Series<'a> {
         files: &mut FileSet,
     ) -> Result<(), WriteError> {
         let number = self.instants.len();
-        let file = match &self.within {
-            Some(folder) => format!("{folder}/{number:04}.{ending}"),
-            None => format!("{}_{number:04}.{ending}", self.name),
-        };
+        let file = format!("{}/{number:04}.{ending}", self.folder);
         files.add(&file, bytes)?;
         self.instants.push((time, file));
         Ok(())
     }
 
-    /// Writes the list of the instants so far.
+    /// Writes the list of the instants so far, and removes those of a longer motion that stood here before.
     ///
     /// # Errors
     /// The file cannot be written.
     pub fn finish(&self, files: &mut FileSet) -> Result<(), WriteError> {
+        remove_from(self.instants.len(), self.folder, files);
         let name = format!("{}.pvd", self.name);
         files.add(name, pvd(&self.instants, self.origin).as_bytes())
+    }
+}
+
+/// Removes the instants from a number on that a folder of a series has.
+pub(crate) fn remove_from(first: usize, folder: &str, files: &mut FileSet) {
+    let there = fs::read_dir(files.folder().join(folder)).into_iter();
+    for entry in there.flatten().flatten() {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let number = name.split('.').next().map(str::parse::<usize>);
+        if matches!(number, Some(Ok(number)) if number >= first) {
+            files.remove(format!("{folder}/{name}"));
+        }
     }
 }
 
@@ -215,7 +219,7 @@ fn piece(text: &mut String, grids: &[UnstructuredGrid<'_>]) {
     );
 
     text.push_str("<Points>\n");
-    let places = grids.iter().flat_map(|grid| grid.points);
+    let places = grids.iter().flat_map(|grid| &grid.points);
     let places = places.flat_map(|x| [x.x, x.y, x.z]);
     array(text, "Float64", "Points", 3, &bytes_of(places));
     text.push_str("</Points>\n<Cells>\n");

@@ -1,7 +1,5 @@
 //! Rigid bodies, lumped muscles and markers for ParaView: `parts/0000.vtp`, `parts/0001.vtp`, … and `parts.pvd`, in SI.
 
-use std::fs;
-
 use nalgebra::Vector3;
 
 use crate::dynamics::trajectory::Trajectory;
@@ -48,24 +46,10 @@ pub(super) fn write(
     trajectory: &Trajectory,
     origin: &Origin,
 ) -> Result<(), WriteError> {
-    let mut series = Series::new(NAME, origin).within(NAME, files)?;
-    let instants = shown(&trajectory.times, 1);
-    for &k in &instants {
+    let mut series = Series::new(NAME, NAME, origin, files)?;
+    for k in shown(&trajectory.times, 1) {
         let text = Parts::at(system, trajectory, k).vtp(origin);
         series.add_file(trajectory.times[k] / 1e3, "vtp", text.as_bytes(), files)?;
-    }
-    // Those of a longer motion that stood here before.
-    let older = |name: &str| {
-        let number = name.strip_suffix(".vtp")?.parse::<usize>().ok()?;
-        (number >= instants.len()).then(|| format!("{NAME}/{name}"))
-    };
-    let there = fs::read_dir(files.folder().join(NAME))
-        .into_iter()
-        .flatten();
-    for entry in there.flatten() {
-        if let Some(name) = older(&entry.file_name().to_string_lossy()) {
-            files.remove(name);
-        }
     }
     series.finish(files)
 }

@@ -98,10 +98,10 @@ fn a_solid_reads_back_as_it_was() {
         field("stress [Pa]", 9, numbers(9 * cells)),
     ];
     let grid = UnstructuredGrid {
-        points: &mesh.nodes,
+        points: mesh.nodes.clone(),
         hexahedra: &mesh.hexahedra,
-        point_data: &point_data,
-        cell_data: &cell_data,
+        point_data: point_data.to_vec(),
+        cell_data: cell_data.to_vec(),
     };
     let text = String::from_utf8(vtu(&[grid], &origin())).unwrap();
 
@@ -143,16 +143,16 @@ fn solids_stand_one_after_the_other() {
     let stretch = [field("stretch", 3, vec![1.0, 2.0, 3.0])];
     let grids = [
         UnstructuredGrid {
-            points: &mesh.nodes,
+            points: mesh.nodes.clone(),
             hexahedra: &mesh.hexahedra,
-            point_data: &potential,
-            cell_data: &[],
+            point_data: potential.to_vec(),
+            cell_data: Vec::new(),
         },
         UnstructuredGrid {
-            points: &apart.nodes,
+            points: apart.nodes.clone(),
             hexahedra: &apart.hexahedra,
-            point_data: &[],
-            cell_data: &stretch,
+            point_data: Vec::new(),
+            cell_data: stretch.to_vec(),
         },
     ];
     let text = String::from_utf8(vtu(&grids, &origin())).unwrap();
@@ -187,8 +187,8 @@ fn many_numbers_read_back_from_their_blocks() {
         let values = (0..count).map(|k| (k % 7 + k / 100_000) as f64).collect();
         let point_data = [field("many", components, values)];
         let grid = UnstructuredGrid {
-            points,
-            point_data: &point_data,
+            points: points.to_vec(),
+            point_data: point_data.to_vec(),
             ..UnstructuredGrid::default()
         };
         let text = String::from_utf8(vtu(&[grid], &origin())).unwrap();
@@ -204,14 +204,14 @@ fn a_series_lists_what_it_wrote() {
     let folder = folder.path().join("deep").join("motion");
     let mesh = Planes::uniform(Vector3::zeros(), Vector3::repeat(1.0), [1, 1, 1]).mesh();
     let grids = [UnstructuredGrid {
-        points: &mesh.nodes,
+        points: mesh.nodes.clone(),
         hexahedra: &mesh.hexahedra,
         ..UnstructuredGrid::default()
     }];
     let origin = origin();
     fs::create_dir_all(&folder).unwrap();
     let mut files = FileSet::in_folder(&folder);
-    let mut series = Series::new("trajectory", &origin);
+    let mut series = Series::new("trajectory", "instants", &origin, &files).unwrap();
     let times = [0.0, 1e-3, 0.1 + 0.2];
     for time in times {
         series.add(time, &grids, &mut files).unwrap();
@@ -250,7 +250,7 @@ fn a_cell_without_its_points_is_a_mistake() {
 fn a_field_of_the_wrong_length_is_a_mistake() {
     let data = [field("stress", 9, vec![0.0; 8])];
     let grid = UnstructuredGrid {
-        point_data: &data,
+        point_data: data.to_vec(),
         ..UnstructuredGrid::default()
     };
     vtu(&[grid], &Origin::default());
@@ -263,7 +263,7 @@ proptest! {
         let values = bits.iter().copied().map(f64::from_bits).collect();
         let name: String = name.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
         let data = [field(&name, 1, values)];
-        let grid = UnstructuredGrid { points: &points, point_data: &data, ..UnstructuredGrid::default() };
+        let grid = UnstructuredGrid { points: points.clone(), point_data: data.to_vec(), ..UnstructuredGrid::default() };
         let text = String::from_utf8(vtu(&[grid], &Origin::default())).unwrap();
         assert_reads(between(&text, "<Piece", "</Piece>")[0], "PointData", &data[0]);
     }

@@ -2,12 +2,13 @@
 
 use std::time::Instant;
 
-use crate::app::fields;
+use crate::app::fields::FOLDER;
 use crate::app::request::CommandInput;
 use crate::app::summary::{MEASURED, Summary};
 use crate::model::Model;
 use crate::nlp::Status;
 use crate::report::file_set::FileSet;
+use crate::report::paraview::remove_from;
 use crate::stop::TimeLimit;
 use crate::workflow::effects::Plan;
 
@@ -76,7 +77,7 @@ pub(in crate::app) fn leave_out(
 ) {
     files.truncate(kept);
     EARLIER.iter().for_each(|name| files.remove(name));
-    fields::remove_from(0, files);
+    remove_from(0, FOLDER, files);
     if summary.message.is_none() {
         stopped.word().clone_into(&mut summary.status);
     }
