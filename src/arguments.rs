@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::choices::{Engine, Export, View};
+use crate::choices::{Export, View};
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use clap_complete::Shell;
 use proboscis::app::{CommandInput, PageWanted, ProgressDisplay, RunIn};
@@ -213,7 +213,7 @@ pub(crate) struct Sweep {
     shard: Shard,
     /// Engine that solves the variants.
     #[arg(long, value_name = "ENGINE", default_value = "threads")]
-    engine: Engine,
+    engine: RunIn,
     /// Time limit in seconds.
     #[arg(long, value_name = "S", value_parser = seconds)]
     max_seconds: Option<f64>,
@@ -229,7 +229,7 @@ impl Sweep {
             max_seconds: self.max_seconds,
             ..of_variants("sweeps", self.sweep, self.output, self.quiet)
         };
-        (request, self.shard, self.engine.run_in())
+        (request, self.shard, self.engine)
     }
 }
 

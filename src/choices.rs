@@ -4,27 +4,6 @@ use clap::ValueEnum;
 use proboscis::app::RunIn;
 use proboscis::report::viewpoint::Viewpoint;
 
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub(crate) enum Engine {
-    /// In threads of this process; in processes where MUMPS solves the linear systems of a control problem.
-    Threads,
-    /// Each in a process of its own.
-    Processes,
-    /// Each as a task of the HyperQueue server that runs, on whatever workers it has.
-    #[value(name = "hyperqueue")]
-    HyperQueue,
-}
-
-impl Engine {
-    pub(crate) const fn run_in(self) -> RunIn {
-        match self {
-            Self::Threads => RunIn::Threads,
-            Self::Processes => RunIn::Processes,
-            Self::HyperQueue => RunIn::HyperQueue,
-        }
-    }
-}
-
 /// Returns the engine of several solves.
 pub(crate) const fn run_in(processes: bool) -> RunIn {
     match processes {

@@ -121,7 +121,7 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
             };
             let run_in = run_in(processes);
             output_of(json, &request, |request| match starts {
-                Some(starts) => app::solve_from_starts(request, starts, seed, run_in),
+                Some(starts) => app::solve_from_starts(request, None, starts, seed, run_in),
                 None if once => app::run_once(request),
                 None => app::run(request),
             })

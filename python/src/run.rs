@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use proboscis::app::{CommandInput, RunIn, run_observed, solve_text_from_starts};
+use proboscis::app::{CommandInput, RunIn, run_observed, solve_from_starts};
 use proboscis::workflow::accuracy::AccuracyTarget;
 use pyo3::prelude::*;
 
@@ -70,6 +70,6 @@ pub(crate) fn starts(
         ..request(command, input, Some(folder))
     };
     supervised(py, None, move |_| {
-        solve_text_from_starts(&request, Some(&text), count, seed, RunIn::Here)
+        solve_from_starts(&request, Some(&text), count, seed, RunIn::Here)
     })
 }

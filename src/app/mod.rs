@@ -50,7 +50,7 @@ pub use kept::cache::run_once;
 pub(crate) use kept::cache::{Found, found, identity, identity_of_words};
 pub(crate) use kept::overwrite_check::{make_folder, without_dots};
 pub use motions::compare;
-pub use multistart::{solve_from_starts, solve_text_from_starts};
+pub use multistart::solve_from_starts;
 pub use program::{
     FileHorizon, SiController, changed_text, check, check_text, checked, with_program,
 };

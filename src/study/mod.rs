@@ -29,7 +29,8 @@ use crate::study::measure::StudyTask;
 use crate::study::read::read_study;
 use crate::study::schedule::{Results, bar, look, time};
 
-/// Runs a study, with this number of timed runs of each point in place of that of the file, and writes its folder; one that Ctrl-C ends early is kept as far as it went.
+/// Runs a study, with this number of timed runs of each point in place of that of the file, and writes its folder; one that
+/// Ctrl-C ends early is kept as far as it went.
 ///
 /// # Errors
 /// The study or one of its problems is wrong, or the results cannot be written.

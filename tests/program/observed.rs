@@ -3,7 +3,7 @@
 use crate::runs::{problem, read};
 use proboscis::app::{
     CommandInput, CommandOutput, PageWanted, ProgressDisplay, Reached, RunIn, changed_text,
-    check_text, checked, inspected, run_observed, solve_text_from_starts, with_program,
+    check_text, checked, inspected, run_observed, solve_from_starts, with_program,
 };
 use proboscis::report::Figures;
 use proboscis::stop::{self, Questions, StopRequest};
@@ -301,7 +301,7 @@ fn a_request_stops_the_solves_that_a_thread_has_begun() {
     let asked = request(nowhere(), folder.path());
     let starts = |request: &StopRequest| {
         stop::listen(request);
-        solve_text_from_starts(&asked, Some(&text("pair")), 3, 1, RunIn::Here).unwrap()
+        solve_from_starts(&asked, Some(&text("pair")), 3, 1, RunIn::Here).unwrap()
     };
     let [before, none] = [StopRequest::default(), StopRequest::default()];
     before.make();

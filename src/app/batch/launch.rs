@@ -13,6 +13,7 @@ use crate::ipopt::Options;
 use crate::report::quoting;
 use crate::report::viewpoint::Viewpoint;
 use crate::stop;
+use clap::ValueEnum;
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fs::File;
@@ -157,19 +158,22 @@ impl Batch<'_> {
 }
 
 /// Engine that runs the solves of a batch.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, ValueEnum)]
 #[serde(rename_all = "snake_case")]
 pub enum RunIn {
-    /// In threads of this process, where the linear solver allows that; in processes elsewhere.
+    /// In threads of this process; in processes where MUMPS solves the linear systems of a control problem.
     Threads,
     /// In this process: in threads, where the linear solver allows that, one after the other elsewhere.
+    #[value(skip)]
     Here,
     /// One after the other, in this process.
+    #[value(skip)]
     InTurn,
     /// Each in a process of its own.
     Processes,
-    /// Each as a task of a HyperQueue server.
+    /// Each as a task of the HyperQueue server that runs, on whatever workers it has.
     #[serde(rename = "hyperqueue")]
+    #[value(name = "hyperqueue")]
     HyperQueue,
 }
 

@@ -29,25 +29,12 @@ const MOST: usize = 1000;
 
 /// Solves a control problem, of one motion or several, from its own guesses and from `starts − 1` random ones, as many at once as there are cores.
 ///
-/// The files of the best solution go to the folder itself, next to `starts.csv`.
+/// The files of the best solution go to the folder itself, next to `starts.csv`. A `text` stands for that of the problem file, which then only names
+/// it and the folder that paths are relative to; it is not solved in processes, which read the file.
 ///
 /// # Errors
 /// The input is wrong, or the results cannot be written. A start that fails is no error as long as one succeeds.
 pub fn solve_from_starts(
-    request: &CommandInput,
-    starts: usize,
-    seed: u64,
-    wanted: RunIn,
-) -> Result<CommandOutput, CommandError> {
-    solve_text_from_starts(request, None, starts, seed, wanted)
-}
-
-/// The same; a `text` stands for that of the problem file, which then only names it and the folder that paths are relative to. It is
-/// not solved in processes, which read the file.
-///
-/// # Errors
-/// As of [`solve_from_starts`].
-pub fn solve_text_from_starts(
     request: &CommandInput,
     text: Option<&str>,
     starts: usize,
