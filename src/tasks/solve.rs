@@ -97,18 +97,11 @@ fn solve_task(
             WorkflowError::problem(format!("control.sensitivity.{name}"), reason)
         })?;
     }
-    let HeldGoals {
-        found,
-        controls,
-        notes,
-    } = solve_and_hold(task, request, observer)?;
+    let (found, controls) = solve_and_hold(task, request, observer)?;
     let each = task.motions.iter().zip(&controls).zip(found.optima);
-    let each = each.zip(found.notes).zip(notes);
     let iterations = found.iterations;
-    let list = each.map(|((((motion, control), optimum), refined), not_found)| {
-        let system = motion.system;
-        assessed(system, control, optimum, iterations, refined, not_found)
-    });
+    let list = each
+        .map(|((motion, control), optimum)| assessed(motion.system, control, optimum, iterations));
     let list: Vec<SolveResult> = list.collect();
     let whole = found.whole;
     let mut remarks = Remarks::default();
@@ -127,15 +120,12 @@ fn solve_task(
     })
 }
 
-/// An optimum with its verdict and all that is observed of it. Notes say why its grid is another one than that of the problem, and that inputs that hold
-/// its goal were not found.
+/// An optimum with its verdict and all that is observed of it.
 fn assessed(
     system: &System,
     control: &Control,
     optimum: Optimum,
     iterations: usize,
-    refined: Option<String>,
-    not_found: Option<String>,
 ) -> SolveResult {
     let (model, boundary) = (&optimum.model, &optimum.boundary);
     let tested = optimum.resimulation.as_ref();
@@ -162,9 +152,7 @@ fn assessed(
         trajectory,
     };
     let not_kept = not_kept.filter(|_| result.verdict.is_solved);
-    let can_seek = not_found.is_none() && hold_obstacle(&result.optimum.model, control).is_none();
-    result.remarks = remarks(system, control, &result, refined, not_kept, can_seek);
-    result.remarks.note("hold", not_found);
+    result.remarks = remarks(system, control, &result, not_kept);
     add_sensitivities(system, control, &mut result);
     result
 }
@@ -197,18 +185,16 @@ fn add_sensitivities(system: &System, control: &Control, result: &mut SolveResul
     }
 }
 
-/// All that is to be known of a result: `refined` is the reason for another grid than that of the problem, `not_kept` the reason why the end
-/// is not kept, `can_seek` is true where inputs that hold the goal can be sought and were not.
+/// All that is to be known of a result, whose end is not kept for a reason, if any.
 fn remarks(
     system: &System,
     control: &Control,
     result: &SolveResult,
-    refined: Option<String>,
     not_kept: Option<String>,
-    can_seek: bool,
 ) -> Remarks {
     let optimum = &result.optimum;
     let tested = optimum.resimulation.as_ref();
+    let can_seek = optimum.not_found.is_none() && hold_obstacle(&optimum.model, control).is_none();
     let afterwards = optimum.afterwards.as_ref();
     let left_goal = afterwards.and_then(|after| after.warning(can_seek));
     let mut remarks = Remarks::default();
@@ -216,7 +202,7 @@ fn remarks(
     remarks.note("goal", optimum.boundary.notes.iter().cloned());
     remarks.note("moved_marker", moved_markers(system));
     remarks.warn("singular_loops", optimum.model.loops.warning.clone());
-    remarks.note("refined_grid", refined);
+    remarks.note("refined_grid", optimum.refined.clone());
     remarks.warn("coarse_intervals", tested.and_then(Resimulation::warning));
     let along = LoopLimits::of_optimum(control, optimum);
     remarks.warn("limit_passed", along.and_then(|along| along.warning()));
@@ -247,6 +233,7 @@ fn remarks(
     remarks.note("tracking", solve_messages::tracking_notes(&result.tracking));
     remarks.note("waypoint_value", ends(&result.waypoint_values));
     remarks.note("final_value", ends(&result.final_values));
+    remarks.note("hold", optimum.not_found.map(str::to_owned));
     remarks
 }
 
@@ -254,78 +241,55 @@ fn remarks(
 const NOT_FOUND: &str = "no inputs within the bounds were found that hold the goal";
 const UNFINISHED: &str = "the inputs that hold the goal were not found in the time: \"hold\": \"find\" seeks them at once";
 
-/// Optima, and the problems that they solve.
-pub(super) struct HeldGoals<'a> {
-    pub(super) found: Together,
-    /// The problems, in which the inputs that hold the goals are unknowns where these were found.
-    pub(super) controls: Vec<Cow<'a, Control>>,
-    /// For each a note that none were found.
-    pub(super) notes: Vec<Option<String>>,
-}
-
 /// Solves a task, and again with the inputs that hold the goals as unknowns where these are left and can be held; those optima count if
-/// simulations stay at the goals.
+/// simulations stay at the goals. With the optima come the problems that they solve.
 ///
 /// # Errors
 /// As of [`optimise_together`].
-pub(super) fn solve_and_hold<'a>(
+fn solve_and_hold<'a>(
     task: &ControlTask<'a>,
     request: SolveRequest,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
-) -> Result<HeldGoals<'a>, WorkflowError> {
+) -> Result<(Together, Vec<Cow<'a, Control>>), WorkflowError> {
     let budget = Budget::new(request.limits);
     let mut found = optimise_together(task, request, observer)?;
     hold(&mut found, task);
     let each = task.motions.iter().zip(&found.optima);
-    let left: Vec<bool> = each
-        .map(|(motion, optimum)| is_left(optimum, motion.control))
-        .collect();
-    let end = |found: Together, note: Option<&str>| {
-        let controls = task.motions.iter();
-        let of = |is_left: &bool| note.filter(|_| *is_left).map(str::to_owned);
-        Ok(HeldGoals {
-            found,
-            controls: controls.map(|one| Cow::Borrowed(one.control)).collect(),
-            notes: left.iter().map(of).collect(),
-        })
-    };
-    if !left.contains(&true) {
-        return end(found, None);
-    }
-    if budget.is_over() {
-        unfinished(&mut found, &left);
-        return end(found, Some(UNFINISHED));
-    }
-    let each = task.motions.iter().zip(&found.optima).zip(&left);
-    let held: Vec<Control> = each
-        .map(|((motion, optimum), is_left)| held(motion.control, optimum, *is_left))
-        .collect();
-    let limits = budget.left_of_limits();
-    let again = task.with(&held);
-    match optimise_together(&again, SolveRequest { limits, ..request }, observer) {
-        Ok(mut second) => {
-            hold(&mut second, &again);
-            second.iterations += found.iterations;
-            let mut each = held.iter().zip(&second.optima).zip(&left);
-            if each.all(|((control, optimum), is_left)| {
-                optimum.is_solved() && (!is_left || is_kept(optimum, control))
-            }) {
-                second.carry(&found);
-                return Ok(HeldGoals {
-                    found: second,
-                    notes: vec![None; held.len()],
-                    controls: held.into_iter().map(Cow::Owned).collect(),
-                });
+    let left = each.map(|(motion, optimum)| is_left(optimum, motion.control));
+    let left: Vec<bool> = left.collect();
+    if left.contains(&true) && !budget.is_over() {
+        let each = task.motions.iter().zip(&found.optima).zip(&left);
+        let held = each.map(|((motion, optimum), is_left)| held(motion.control, optimum, *is_left));
+        let held: Vec<Control> = held.collect();
+        let limits = budget.left_of_limits();
+        let again = task.with(&held);
+        match optimise_together(&again, SolveRequest { limits, ..request }, observer) {
+            Ok(mut second) => {
+                hold(&mut second, &again);
+                second.iterations += found.iterations;
+                let mut each = held.iter().zip(&second.optima).zip(&left);
+                if each.all(|((control, optimum), is_left)| {
+                    optimum.is_solved() && (!is_left || is_kept(optimum, control))
+                }) {
+                    second.carry(&found);
+                    return Ok((second, held.into_iter().map(Cow::Owned).collect()));
+                }
+                found.iterations = second.iterations;
             }
-            found.iterations = second.iterations;
+            Err(error) => tracing::debug!(%error, "the inputs that hold the goals are not sought"),
         }
-        Err(error) => tracing::debug!(%error, "the inputs that hold the goals are not sought"),
     }
-    if budget.is_over() {
-        unfinished(&mut found, &left);
-        return end(found, Some(UNFINISHED));
+    let each = found.optima.iter_mut().zip(left);
+    for (optimum, _) in each.filter(|(_, is_left)| *is_left) {
+        optimum.not_found = Some(NOT_FOUND);
+        if budget.is_over() {
+            optimum.not_found = Some(UNFINISHED);
+            // By Ctrl-C the whole solve was stopped.
+            optimum.stopped = optimum.stopped.or(Budget::of_seconds(None).stopped());
+        }
     }
-    end(found, Some(NOT_FOUND))
+    let controls = task.motions.iter().map(|one| Cow::Borrowed(one.control));
+    Ok((found, controls.collect()))
 }
 
 /// Holds the voltages of the goals after the ends.
@@ -343,14 +307,6 @@ fn held(control: &Control, optimum: &Optimum, are_sought: bool) -> Control {
         },
         guess: Guess::Solution(Earlier::new(optimum.motion.clone())),
         ..control.clone()
-    }
-}
-
-/// Marks the optima whose search for what holds their goals was stopped: by Ctrl-C the whole solve was.
-fn unfinished(found: &mut Together, left: &[bool]) {
-    let each = found.optima.iter_mut().zip(left);
-    for (optimum, _) in each.filter(|(_, is_left)| **is_left) {
-        optimum.stopped = optimum.stopped.or(Budget::of_seconds(None).stopped());
     }
 }
 

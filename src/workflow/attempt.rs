@@ -42,8 +42,6 @@ pub struct Together {
     pub iterations: usize,
     /// Estimated errors, the greatest of all motions, where an accuracy was wanted of motions that name their intervals.
     pub accuracy: Option<Accuracy>,
-    /// For each a note on the reason for another grid, or on the lack of a verification.
-    pub notes: Vec<Option<String>>,
 }
 
 impl Together {
@@ -148,13 +146,11 @@ pub(crate) fn attempt(
     if let [only] = &mut optima[..] {
         (only.program.gap, only.program.wide) = (whole.gap, whole.wide.clone());
     }
-    let notes = vec![None; optima.len()];
     Ok(Together {
         optima,
         whole,
         iterations: 0,
         accuracy: None,
-        notes,
     })
 }
 
@@ -249,6 +245,8 @@ impl End {
             active: self.active,
             afterwards: None,
             repeated: None,
+            refined: None,
+            not_found: None,
         };
         if out.solution.status.is_solved() {
             out.verify(control, &self.discrete);

@@ -160,10 +160,9 @@ impl GridSolves<'_, '_> {
     }
 
     /// The end of the solves.
-    fn end(&self, found: Together, notes: Vec<Option<String>>) -> Together {
+    fn end(&self, found: Together) -> Together {
         Together {
             iterations: self.iterations,
-            notes,
             ..found
         }
     }
@@ -178,17 +177,18 @@ impl GridSolves<'_, '_> {
         let is_open = is_infeasible(optimum.solution.status) && !self.budget.is_over();
         if is_open
             && FINER * size <= VARIABLES
-            && let Ok(found) = self.solve(&self.times(FINER), None)
+            && let Ok(mut found) = self.solve(&self.times(FINER), None)
             && found.is_solved()
         {
             let finer = FINER * own;
             let note = format!(
                 "on {own} intervals no motion keeps goal and limits; on {finer} intervals this one does"
             );
-            return Ok(self.end(found, vec![Some(note)]));
+            found.optima[0].refined = Some(note);
+            return Ok(self.end(found));
         }
         let Some(cause) = optimum.cause() else {
-            return Ok(self.end(first, vec![None]));
+            return Ok(self.end(first));
         };
         let of_problem = format!("on {own} intervals: {}", cause.message());
         let mut before = None;
@@ -206,7 +206,8 @@ impl GridSolves<'_, '_> {
                 finest = Some(n);
                 if found.is_solved() {
                     found.carry(&first);
-                    return Ok(self.end(found, vec![Some(reproduced_on(&of_problem, n))]));
+                    found.optima[0].refined = Some(reproduced_on(&of_problem, n));
+                    return Ok(self.end(found));
                 }
                 if found.optima[0].solution.status.is_solved() {
                     before = Some(found);
@@ -214,8 +215,8 @@ impl GridSolves<'_, '_> {
             }
         }
         first.optima[0].stopped = self.budget.stopped();
-        let notes = vec![finest.map(not_reproduced)];
-        Ok(self.end(first, notes))
+        first.optima[0].refined = finest.map(not_reproduced);
+        Ok(self.end(first))
     }
 
     /// Solves on the own grids, then on finer ones of the motions whose verification does not confirm the `accuracy` (where their intervals are not
@@ -247,27 +248,22 @@ impl GridSolves<'_, '_> {
         }
         let (stopped, are_several) = (self.budget.stopped(), found.optima.len() > 1);
         let motions = self.task.motions.iter().zip(&mut found.optima);
-        let notes = motions
-            .zip(of_problems)
-            .map(|((motion, optimum), of_problem)| {
-                // What the solver found, or what several motions did not reach, might have been tried again.
-                let is_open =
-                    optimum.meets_equations() || are_several && is_unreached(&optimum.solution);
-                if is_open && !optimum.is_solved() {
-                    optimum.stopped = stopped;
-                }
-                let is_short = motion.control.is_refined && !is_confirmed(optimum, accuracy);
-                let n = optimum.motion.intervals();
-                match of_problem {
-                    _ if is_short && optimum.meets_equations() => {
-                        Some(unconfirmed(n, accuracy, why))
-                    }
-                    Some(_) if !optimum.is_solved() => Some(not_reproduced(n)),
-                    of_problem => of_problem.map(|of_problem| reproduced_on(&of_problem, n)),
-                }
-            });
-        let notes = notes.collect();
-        Ok(self.end(found, notes))
+        for ((motion, optimum), of_problem) in motions.zip(of_problems) {
+            // What the solver found, or what several motions did not reach, might have been tried again.
+            let is_open =
+                optimum.meets_equations() || are_several && is_unreached(&optimum.solution);
+            if is_open && !optimum.is_solved() {
+                optimum.stopped = stopped;
+            }
+            let is_short = motion.control.is_refined && !is_confirmed(optimum, accuracy);
+            let n = optimum.motion.intervals();
+            optimum.refined = match of_problem {
+                _ if is_short && optimum.meets_equations() => Some(unconfirmed(n, accuracy, why)),
+                Some(_) if !optimum.is_solved() => Some(not_reproduced(n)),
+                of_problem => of_problem.map(|of_problem| reproduced_on(&of_problem, n)),
+            };
+        }
+        Ok(self.end(found))
     }
 
     /// Solves on finer grids, from the motions before, then from the guesses; the reason where that is not done.

@@ -161,6 +161,10 @@ pub struct Optimum {
     pub afterwards: Option<Afterwards>,
     /// A periodic motion under the same inputs again.
     pub repeated: Option<Repeated>,
+    /// A note on the reason for another grid, or on the lack of a verification.
+    pub refined: Option<String>,
+    /// A note that inputs which hold the goal were sought and not found.
+    pub not_found: Option<&'static str>,
 }
 
 impl Optimum {
