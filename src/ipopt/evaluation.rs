@@ -164,16 +164,27 @@ impl<'a> Evaluator<'a> {
             ..*iteration
         };
         let (bounds, mut seconds) = (self.asked.nlp.variables(), 0.0);
-        let mut shown = mem::take(&mut self.record.shown);
-        let [now, before] = &mut shown;
-        let squares = self.asked.squares;
-        let x = squares.point(&self.record.derivatives_at, now);
-        let before = squares.point(&self.record.latest, before);
-        let before = Before::from_record(self.record, before, bounds, squares, self.asked.scale);
+        let (mut places, mut multipliers) = mem::take(&mut self.record.shown);
+        let ([now, before], record, squares) = (&mut places, &*self.record, self.asked.squares);
+        let x = squares.point(&record.derivatives_at, now);
+        let before = squares.point(&record.latest, before);
+        let report = record.iterations.last();
+        let report = report.filter(|_| !record.costates.is_empty());
+        if report.is_some() {
+            multipliers.reset(before.len(), record.costates.len());
+            record.write_multipliers(bounds, &mut multipliers);
+            squares.of_roots(before, &mut multipliers);
+            multipliers.scale(self.asked.scale.recip());
+        }
+        let before = report.map(|report| Before {
+            report,
+            x: before,
+            multipliers: &multipliers,
+        });
         let reached = Reached { x, before };
         let verdict = timed(&mut seconds, || (self.asked.observer)(iteration, &reached));
         let record = &mut *self.record;
-        record.shown = shown;
+        record.shown = (places, multipliers);
         record.seconds.observer += seconds;
         record.iterations.push(*iteration);
         record.latest.copy_from_slice(&record.derivatives_at);

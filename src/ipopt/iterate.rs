@@ -1,7 +1,6 @@
 //! An iterate as an observer sees it, and the data of the one before.
 
 use crate::ipopt::solution::{Evaluations, Iteration, Seconds};
-use crate::nlp::squares::Squares;
 use crate::nlp::{Bounds, Multipliers, Status};
 
 /// An accepted iterate.
@@ -21,42 +20,8 @@ pub struct Before<'a> {
     pub report: &'a Iteration,
     /// Its variables.
     pub x: &'a [f64],
-    record: &'a Record,
-    bounds: &'a Bounds,
-    squares: &'a Squares,
-    /// Factor of f in all that Ipopt sees.
-    scale: f64,
-}
-
-impl<'a> Before<'a> {
-    /// The latest iterate of a record, where its multipliers are known.
-    pub(super) fn from_record(
-        record: &'a Record,
-        x: &'a [f64],
-        bounds: &'a Bounds,
-        squares: &'a Squares,
-        scale: f64,
-    ) -> Option<Self> {
-        let report = record.iterations.last()?;
-        (!record.costates.is_empty()).then_some(Self {
-            report,
-            x,
-            record,
-            bounds,
-            squares,
-            scale,
-        })
-    }
-
     /// Its multipliers; those of bounds are the barrier parameter over the distance, to which Ipopt keeps them near.
-    pub fn multipliers(&self) -> Multipliers {
-        let mut multipliers = Multipliers::default();
-        multipliers.reset(self.x.len(), self.record.costates.len());
-        self.record.write_multipliers(self.bounds, &mut multipliers);
-        self.squares.of_roots(self.x, &mut multipliers);
-        multipliers.scale(self.scale.recip());
-        multipliers
-    }
+    pub multipliers: &'a Multipliers,
 }
 
 /// Distance from a relaxed bound that is distinguished from zero, of its magnitude and at least of one.
@@ -75,8 +40,8 @@ pub(super) struct Record {
     pub(super) derivatives_at: Vec<f64>,
     /// The latest iterate reported; before the first one, the starting point.
     pub(super) latest: Vec<f64>,
-    /// Room for an iterate and the one before, where they are shown as other points than Ipopt has them.
-    pub(super) shown: [Vec<f64>; 2],
+    /// Room for an iterate and the one before, where they are shown as other points than Ipopt has them, and for the multipliers of that one.
+    pub(super) shown: ([Vec<f64>; 2], Multipliers),
     /// Multipliers of the constraints there, as the Hessian was asked with; empty until it was.
     pub(super) costates: Vec<f64>,
     /// Reason why the solve was stopped from outside, if it was.

@@ -70,9 +70,7 @@ impl Solves<'_, '_> {
             let motions = |number: usize| at(number, report, reached.x, None);
             let before = reached.before.as_ref();
             let earlier = before.map(|before| {
-                move |number: usize| {
-                    at(number, before.report, before.x, Some(&before.multipliers()))
-                }
+                move |number: usize| at(number, before.report, before.x, Some(before.multipliers))
             });
             let earlier = earlier
                 .as_ref()

@@ -345,7 +345,13 @@ fn the_iterate_before_has_the_multipliers_that_ipopt_returns() {
     let mut told = Vec::new();
     let mut observer = |_: &Iteration, reached: &Reached<'_>| {
         let before = reached.before.as_ref();
-        told.push(before.map(|before| (*before.report, before.x.to_vec(), before.multipliers())));
+        told.push(before.map(|before| {
+            (
+                *before.report,
+                before.x.to_vec(),
+                before.multipliers.clone(),
+            )
+        }));
         ControlFlow::Continue(())
     };
     let start = from(&HS071_START);
