@@ -42,7 +42,7 @@ pub fn simulate_by(
 ) -> (DiscreteTrajectory, Option<StepError>) {
     let lengths = Lengths::Equal(TimeGrid { h, steps });
     let begun = DiscreteTrajectory::at(start);
-    go_on(solving, model, begun, lengths, drive, observer)
+    go_on(solving, model, begun, lengths, &drive, observer)
 }
 
 /// Equal steps, given ones, or steps that a tolerance controls.
@@ -80,7 +80,7 @@ pub fn go_on(
     model: &Model,
     mut discrete: DiscreteTrajectory,
     lengths: Lengths<'_>,
-    drive: impl Drive,
+    drive: &dyn Drive,
     observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
 ) -> (DiscreteTrajectory, Option<StepError>) {
     if !discrete.is_of(model) {
@@ -99,8 +99,8 @@ pub fn go_on(
         false => Reading::Instants,
     };
     let failure = match (lengths.first(), is_midpoint) {
-        (Some(first), false) => match Steps::stages(model, &start, solving, first, &drive) {
-            Ok(mut stages) => record(&mut stages, lengths, &drive, observer, &mut discrete),
+        (Some(first), false) => match Steps::stages(model, &start, solving, first, drive) {
+            Ok(mut stages) => record(&mut stages, lengths, drive, observer, &mut discrete),
             Err(error) => Some(error),
         },
         _ => {
@@ -109,7 +109,7 @@ pub fn go_on(
             if let (Lengths::Controlled(_), Some(rates)) = (lengths, &start.rates) {
                 stepper.equations.rates.copy_from_slice(rates);
             }
-            record(&mut stepper, lengths, &drive, observer, &mut discrete)
+            record(&mut stepper, lengths, drive, observer, &mut discrete)
         }
     };
     (discrete, failure)

@@ -306,9 +306,10 @@ fn markers(model: &Model, law: &Law) -> Result<Vec<Option<usize>>, String> {
     readings.map(marker).collect()
 }
 
+/// The inputs in the middle of a step act in all of it.
 impl Drive for Loop<'_> {
-    fn at(&self, [from, to]: [f64; 2], part: f64) -> Vec<f64> {
-        let time = from + part * (to - from);
+    fn at(&self, [from, to]: [f64; 2], _: f64) -> Vec<f64> {
+        let time = from + 0.5 * (to - from);
         let mut out = self.model.scalars(&self.voltages.at(time));
         let State {
             controller, inputs, ..

@@ -181,14 +181,11 @@ pub fn integrate_on(
         .run(begun, observer),
         None => {
             let lengths = Lengths::Equal(TimeGrid { h, steps });
-            let solving = task.solving;
-            let (motion, failure) = match &controlled {
-                Some(controlled) => {
-                    let drive = |from: f64, to: f64| controlled.at([from, to], 0.5);
-                    go_on(solving, &model, begun, lengths, drive, observer)
-                }
-                None => go_on(solving, &model, begun, lengths, drive, observer),
+            let drive: &dyn Drive = match &controlled {
+                Some(controlled) => controlled,
+                None => &drive,
             };
+            let (motion, failure) = go_on(task.solving, &model, begun, lengths, drive, observer);
             Found::without_error(motion, failure)
         }
     };

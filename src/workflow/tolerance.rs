@@ -13,8 +13,7 @@
 
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
-    DiscreteTrajectory, Drive, Inputs, Lengths, Solving, StepControl, StepError, distance_between,
-    go_on,
+    DiscreteTrajectory, Drive, Lengths, Solving, StepControl, StepError, distance_between, go_on,
 };
 use crate::model::Model;
 use crate::nlp::Status;
@@ -127,7 +126,7 @@ impl ByTolerance<'_> {
         lengths: Lengths<'_>,
         observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
     ) -> (DiscreteTrajectory, Option<StepError>) {
-        let drive = Shared(self.drive);
+        let Self { drive, .. } = *self;
         go_on(self.solving, self.model, begun, lengths, drive, observer)
     }
 
@@ -233,22 +232,9 @@ pub(super) fn repeated(
 ) -> Option<DiscreteTrajectory> {
     let (begun, lengths) = (at_start(discrete), Lengths::Between(times));
     let each = |_: &DiscreteTrajectory| ControlFlow::Continue(());
-    let (motion, failure) = go_on(solving, model, begun, lengths, Shared(drive), each);
+    let (motion, failure) = go_on(solving, model, begun, lengths, drive, each);
     let is_whole = failure.is_none() && motion.times.len() == times.len();
     is_whole.then_some(motion)
-}
-
-/// A drive that several motions share.
-struct Shared<'a>(&'a dyn Drive);
-
-impl Drive for Shared<'_> {
-    fn at(&self, step: [f64; 2], part: f64) -> Vec<f64> {
-        self.0.at(step, part)
-    }
-
-    fn ends(&self, step: [f64; 2]) -> Option<[Inputs; 2]> {
-        self.0.ends(step)
-    }
 }
 
 /// A motion before its first step.
