@@ -14,8 +14,7 @@ use crate::ipopt::bindings::{
     FreeIpoptProblem, IpoptProblemInfo, IpoptSolve, SetIntermediateCallback,
 };
 use crate::ipopt::evaluation::Evaluator;
-use crate::ipopt::option_value::OptionValue;
-use crate::ipopt::solution::Iteration;
+use crate::ipopt::solution::{Iteration, OptionValue};
 use crate::nlp::{Bounds, Entries, Multipliers};
 use crate::sparse::mumps::{self, Exclusive};
 

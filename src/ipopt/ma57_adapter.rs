@@ -4,18 +4,21 @@
 //! 3.14 on by the static function `Ipopt::Ma57TSolverInterface::SetFunctions` of C++, whose mangled name holds the types of its arguments. Both take
 //! the same five functions, for all problems of the process. Meaning of the arguments: specification of MA57 (HSL, 2016) and
 //! `IpMa57TSolverInterface.cpp`; the arrays `keep`, `fact` and `ifact`, in which MA57 stores what it knows, stay unused.
+//!
+//! A process may hold another Ipopt too, as Python does with packages that bring their own: names are looked up in the library that the linked
+//! functions stand in, and among all libraries only where that one cannot be identified, as in a program that contains Ipopt.
 
 #![expect(unsafe_code, reason = "C interface of Ipopt")]
 
 use std::ffi::{CStr, c_int, c_uint, c_void};
+use std::mem::MaybeUninit;
 use std::ptr::NonNull;
 use std::sync::OnceLock;
 use std::{mem, slice};
 
 use crate::ipopt::ffi;
-use crate::ipopt::loaded::Loaded;
-use crate::ipopt::option_value::NoStages;
 use crate::ipopt::session::with_current;
+use crate::ipopt::solution::NoStages;
 
 /// Numbers in `info`, in `icntl` and in `cntl`.
 const INFO: usize = 40;
@@ -233,4 +236,38 @@ unsafe extern "C" fn enlarge(
 ) {
     // SAFETY: Ipopt passes `INFO` places for the answer.
     unsafe { answer(info, FAILED, &[]) };
+}
+
+/// The library that a function stands in.
+struct Loaded {
+    /// Of `dlopen`, which is never closed, or that of all libraries.
+    handle: *mut c_void,
+}
+
+impl Loaded {
+    /// The library of this function.
+    fn with(function: *const c_void) -> Self {
+        let mut info = MaybeUninit::<libc::Dl_info>::zeroed();
+        // SAFETY: `dladdr` writes the structure where it knows the address, and returns zero elsewhere; zeros are null pointers.
+        let name = unsafe {
+            libc::dladdr(function, info.as_mut_ptr());
+            info.assume_init().dli_fname
+        };
+        let handle = match name.is_null() {
+            true => None,
+            // SAFETY: the loader's name of a library, which ends in NUL; nothing is loaded that is not there.
+            false => {
+                NonNull::new(unsafe { libc::dlopen(name, libc::RTLD_LAZY | libc::RTLD_NOLOAD) })
+            }
+        };
+        Self {
+            handle: handle.map_or(libc::RTLD_DEFAULT, NonNull::as_ptr),
+        }
+    }
+
+    /// A function of the library or of those that it needs, if there is one of this name.
+    fn function(&self, name: &CStr) -> Option<NonNull<c_void>> {
+        // SAFETY: the name ends in NUL, and the handle is one of `dlopen` that was never closed, or that of all libraries.
+        NonNull::new(unsafe { libc::dlsym(self.handle, name.as_ptr()) })
+    }
 }

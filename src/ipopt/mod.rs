@@ -19,9 +19,7 @@ mod bindings;
 mod evaluation;
 mod ffi;
 mod iterate;
-mod loaded;
 mod ma57_adapter;
-mod option_value;
 mod options;
 mod session;
 mod solution;
@@ -34,12 +32,12 @@ use crate::nlp::Nlp;
 pub use iterate::{Before, Reached};
 #[doc(hidden)]
 pub use ma57_adapter::functions_of_ma57;
-pub use option_value::OptionValue;
-pub use option_value::{NoStages, VERSION};
 pub use options::LinearSolver;
 pub use options::{MUMPS_ORDERING, Options, Start};
-pub use session::{LinearReport, StagesReport};
-pub use solution::{Evaluations, Iteration, Seconds, SolverResult, StartingPoint};
+pub use solution::{
+    Evaluations, Iteration, LinearReport, NoStages, OptionValue, Seconds, SolverResult,
+    StagesReport, StartingPoint, VERSION,
+};
 pub use solver::IpoptError;
 pub use solver::Solver;
 

@@ -1,7 +1,7 @@
 //! Options of a solve: tolerance, limits, kind of start, and any option of Ipopt by name.
 
 use crate::ipopt::ma57_adapter;
-use crate::ipopt::option_value::{NoStages, OptionValue};
+use crate::ipopt::solution::{NoStages, OptionValue};
 use std::collections::BTreeMap;
 
 /// Ordering of the linear solver's elimination unless `mumps_pivot_order` says otherwise: approximate minimum fill.
@@ -400,11 +400,5 @@ impl LinearSolver {
             Self::Stages => ma57_adapter::install().map(|()| stages),
             Self::Mumps => Ok(mumps(None)),
         }
-    }
-
-    /// Returns true if this Ipopt takes [`LinearSolver::Stages`].
-    #[must_use]
-    pub fn has_stages() -> bool {
-        ma57_adapter::install().is_ok()
     }
 }

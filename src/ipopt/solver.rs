@@ -22,11 +22,10 @@
 use crate::ipopt::evaluation::{Asked, Evaluator, Structures};
 use crate::ipopt::ffi::Problem;
 use crate::ipopt::iterate::{Reached, Record};
-use crate::ipopt::option_value::{NoStages, OptionValue};
 use crate::ipopt::options;
 use crate::ipopt::options::{Options, Start};
 use crate::ipopt::session::Session;
-use crate::ipopt::solution::{Iteration, SolverResult, StartingPoint};
+use crate::ipopt::solution::{Iteration, NoStages, OptionValue, SolverResult, StartingPoint};
 use crate::nlp::squares::{InSquares, Squares};
 use crate::nlp::{Bounds, Entries, Multipliers, Nlp, Status, slopes};
 use crate::sparse::mumps;
@@ -74,7 +73,7 @@ impl<N: Nlp> Solver<N> {
             hessian.places().all(|(row, col)| row >= col),
             "lower triangle of the Hessian"
         );
-        let squares = Squares::from_program(&program);
+        let squares = Squares::of(&program, program.squares());
         Self {
             program: InSquares::new(program, squares.clone(), jacobian, hessian),
             squares,

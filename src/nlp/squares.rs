@@ -24,11 +24,6 @@ pub(crate) struct Squares {
 }
 
 impl Squares {
-    /// Those of a program.
-    pub(crate) fn from_program(program: &impl Nlp) -> Self {
-        Self::of(program, program.squares())
-    }
-
     /// These variables of a program; u is the upper bound where there is one.
     pub(crate) fn of(program: &impl Nlp, variables: Vec<usize>) -> Self {
         let upper = &program.variables().upper;

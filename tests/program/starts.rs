@@ -3,7 +3,7 @@
 use crate::common::signals::Listening as _;
 use crate::rank::Rank;
 use crate::runs::{problem, read, run};
-use proboscis::ipopt::LinearSolver;
+use proboscis::ipopt::Options;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
@@ -138,7 +138,7 @@ fn lasting(bytes: &[u8]) -> Value {
 
 #[test]
 fn threads_and_processes_leave_the_same_files() {
-    assert!(LinearSolver::has_stages(), "this Ipopt takes it");
+    assert!(Options::default().run_at_once(), "this Ipopt takes it");
     let pair = problem("pair");
     let both = ["threads", "processes"].map(|run_in| {
         let folder = tempdir().unwrap();

@@ -76,7 +76,7 @@ fn cases() -> Vec<(&'static str, System, Control)> {
 
 #[test]
 fn iterations_and_optima_are_those_of_mumps() {
-    assert!(LinearSolver::has_stages(), "this Ipopt takes it");
+    assert!(Options::default().run_at_once(), "this Ipopt takes it");
     let mut solved = 0;
     for (name, system, control) in cases() {
         let [mumps, stages] =
@@ -110,7 +110,7 @@ fn a_note_says_why_mumps_was_used() {
     let asked = |linear_solver| run(&mut hs071(), &HS071_START, &options(linear_solver)).linear;
     for solver in [LinearSolver::Auto, LinearSolver::Mumps] {
         let linear = asked(solver);
-        let is_refused = solver == LinearSolver::Auto && !LinearSolver::has_stages();
+        let is_refused = solver == LinearSolver::Auto && !Options::default().run_at_once();
         assert_eq!(linear.why_not.is_some(), is_refused);
         assert_eq!(linear.note().is_some(), is_refused);
     }
@@ -288,7 +288,7 @@ fn options_of_ipopt_come_first() {
 /// If MA57 itself is asked for, the linear solver that stands in its place has no program: the solve fails in good order.
 #[test]
 fn no_other_solve_is_answered() {
-    assert!(LinearSolver::has_stages());
+    assert!(Options::default().run_at_once());
     let mut options = options(LinearSolver::Auto);
     let name = OptionValue::Text("ma57".to_owned());
     options.extra.insert("linear_solver".to_owned(), name);

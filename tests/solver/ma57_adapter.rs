@@ -61,7 +61,7 @@ type Solve = unsafe extern "C" fn(
 
 /// Functions in the place of `MA57AD`, `MA57BD` and `MA57CD`.
 fn functions() -> (Analyse, Factor, Solve) {
-    assert!(LinearSolver::has_stages(), "an Ipopt that takes them");
+    assert!(Options::default().run_at_once(), "an Ipopt that takes them");
     let [analyse, factor, solve, ..] = functions_of_ma57();
     // SAFETY: pointers to functions of these types, as MA57 declares its own.
     unsafe {

@@ -8,7 +8,7 @@ use crate::recorded::{Recording, folder};
 use proboscis::control::problem::{Duration, Task};
 use proboscis::control::{BoundaryConditions, Transcription, guess};
 use proboscis::files::read_problem;
-use proboscis::ipopt::{self, LinearSolver, OptionValue, Options};
+use proboscis::ipopt::{self, OptionValue, Options};
 use proboscis::kkt::{Pattern, Plan, Solver, Unknown};
 use proboscis::nlp::{Nlp, Stage};
 use std::cell::RefCell;
@@ -156,7 +156,7 @@ type Initialise = unsafe extern "C" fn(*mut f64, *mut c_int);
 
 /// Gives Ipopt these functions in the place of MA57.
 fn install() {
-    assert!(LinearSolver::has_stages(), "an Ipopt that takes them");
+    assert!(Options::default().run_at_once(), "an Ipopt that takes them");
     // SAFETY: the name ends in NUL, and the library is loaded.
     let symbol = unsafe { libc::dlsym(libc::RTLD_DEFAULT, c"LSL_setMA57".as_ptr()) };
     assert!(!symbol.is_null());

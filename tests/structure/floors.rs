@@ -88,7 +88,6 @@ fn words_stay_in_their_place() {
                     "ipopt/bindings_3_14.rs",
                     "ipopt/ffi.rs",
                     "ipopt/ma57_adapter.rs",
-                    "ipopt/loaded.rs",
                     "sparse/mumps/ffi.rs",
                     "sparse/mumps/libraries.rs",
                     "sparse/mumps/mpi.rs",

@@ -8,13 +8,11 @@ const MOST: usize = 600;
 /// Fewest lines of a file of `src` that is no head of a folder.
 const FEWEST: usize = 60;
 /// Shorter files: traits, tables, and what others could not hold without a circle. The list only gets shorter.
-const SHORT: [&str; 9] = [
+const SHORT: [&str; 7] = [
     "app/multistart/rank.rs",
     "energy/constraint.rs",
     "files/json/layout.rs",
     "files/scene/point.rs",
-    "ipopt/loaded.rs",
-    "ipopt/option_value.rs",
     "model/system/maxwell.rs",
     "report/origin.rs",
     "report/quoting.rs",
