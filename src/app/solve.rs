@@ -1,5 +1,6 @@
 //! A control problem from file to folder: solved, re-simulated, and reported.
 
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 
@@ -17,6 +18,7 @@ use crate::app::summary::{MEASURED, Summary};
 use crate::app::{feedback_files, fields, sensitivity_summary};
 use crate::control::problem::{Control, Regulator};
 use crate::dynamics::observations;
+use crate::dynamics::trajectory::Trajectory;
 use crate::files::Loaded;
 use crate::model::System;
 use crate::report::atomic::WriteError;
@@ -26,9 +28,8 @@ use crate::report::{Run, sensitivities, write_run};
 use crate::stop;
 use crate::tasks::{self, SolveResult};
 use crate::workflow::effects::Plan;
-use crate::workflow::motion::{solved, trajectory};
 use crate::workflow::optimum::Optimum;
-use crate::workflow::resimulate::under_constant_voltages;
+use crate::workflow::resimulate::constant;
 
 /// Length of the motion under constant voltages that is drawn next to the optimal one, in durations.
 const COMPARED: usize = 3;
@@ -173,11 +174,13 @@ impl Solved<'_> {
             model, boundary, ..
         } = optimum;
         let is_solved = summary.message.is_none();
-        let compared = is_solved
-            .then(|| under_constant_voltages(model, boundary, &optimum.motion, COMPARED))
-            .flatten()
-            .map(|(discrete, _)| trajectory(model, &solved(model, &discrete, None)))
-            .map(|other| shown.beside(other));
+        let held = boundary.rest[1].as_ref().filter(|_| is_solved);
+        let compared = held.map(|held| {
+            let go_on = || ControlFlow::Continue(());
+            let (start, motion) = (&boundary.start, &optimum.motion);
+            let (other, _) = constant(model, start, motion, held, COMPARED, go_on);
+            shown.beside(Trajectory::from_discrete(model, &other))
+        });
         let goal = goal(model, boundary);
         let mut content = summary.page("Optimal control", Some(self.loaded));
         content.rows = rows(summary, self.system, control, result);

@@ -10,9 +10,8 @@
 //! ```
 
 use crate::nlp::{Multipliers, Nlp};
-use crate::sensitivity::check::NoSensitivity;
 use crate::sensitivity::conditions::{
-    Conditions, Direction, EXACT, Held, Place, Places, Saddle, Side, WEAK, largest,
+    Conditions, Direction, EXACT, Held, NoSensitivity, Place, Places, Saddle, Side, WEAK, largest,
 };
 use crate::sensitivity::margins::{Changes, Margin, Of, Range};
 

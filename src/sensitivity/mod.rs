@@ -14,9 +14,8 @@
 //!
 //! `kernel` knows any [`Nlp`](crate::nlp::Nlp), `conditions` the bounds that its optimum reaches and its linear system. `optimum` is the front for
 //! control problems: `with_parameters` has their program, in which constants, start and goal are columns that are held, and `directions` the changes
-//! with each number. `check` refuses numbers before the solve.
+//! with each number.
 
-mod check;
 mod conditions;
 mod directions;
 mod kernel;
@@ -24,9 +23,9 @@ mod margins;
 mod optimum;
 mod with_parameters;
 
-pub use check::{NoSensitivity, check};
 pub(crate) use conditions::Saddle;
-pub use conditions::{Direction, Held, Side};
+pub use conditions::{Direction, Held, NoSensitivity, Side};
 pub use kernel::{Adjoint, Derivative, Kernel, Outcome};
 pub use margins::{End, Range};
 pub use optimum::{Gradients, Refusal, Sensitivity, gradients, sensitivities};
+pub use with_parameters::check;

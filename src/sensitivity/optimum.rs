@@ -9,8 +9,7 @@
 use crate::control::problem::{BoundaryState, Control, OutcomeOf, Varied, VariedOf};
 use crate::control::{Column, Solution, Transcription};
 use crate::model::{Coordinates, Model, Role, System, Time};
-use crate::sensitivity::check::NoSensitivity;
-use crate::sensitivity::conditions::{Conditions, Direction, Places};
+use crate::sensitivity::conditions::{Conditions, Direction, NoSensitivity, Places};
 use crate::sensitivity::directions::Directions;
 use crate::sensitivity::kernel::{Derivative, Kernel, Outcome};
 use crate::sensitivity::margins::{MarkerSlopes, Range};

@@ -1,15 +1,16 @@
 //! The program of an optimum in which constants of the system, start and goal are columns too, held at their values.
+//!
+//! Refusals of numbers by which no optimum is differentiated, before one is looked for.
 
 use crate::control::problem::{BoundaryState, Control, Duration, Rest, Varied, VariedOf};
 use crate::control::{
-    BoundaryConditions, BoundedQuantity, Column, InitialGuess, Numbering, Outline, Rests, Row,
-    Solution, Transcription, guess, rest_at,
+    BoundaryConditions, BoundaryError, BoundedQuantity, Column, InitialGuess, Numbering, Outline,
+    Rests, Row, Solution, Transcription, guess, rest_at,
 };
 use crate::dynamics::Equilibrium;
-use crate::model::{Model, Parameter, Role, System};
+use crate::model::{Coordinates, Model, Parameter, Role, System};
 use crate::nlp::{Multipliers, Nlp};
-use crate::sensitivity::check::NoSensitivity;
-use crate::sensitivity::conditions::{Held, Place};
+use crate::sensitivity::conditions::{Held, NoSensitivity, Place};
 use crate::sensitivity::kernel::Kernel;
 
 /// A state of rest with its voltages.
@@ -333,4 +334,72 @@ fn rests(
         _ => None,
     };
     Ok([start, goal])
+}
+
+/// Checks that the optimum of a problem may be differentiated by the numbers that it names.
+///
+/// # Errors
+/// Name of the number and the reason why not.
+pub fn check(system: &System, control: &Control) -> Result<(), (String, String)> {
+    if control.varied.is_empty() {
+        return Ok(());
+    }
+    let constants = control.varied.iter().filter_map(Varied::parameter);
+    let mut held = control.clone();
+    held.parameters.extend(constants.cloned());
+    let h0 = control.duration.first() / control.intervals as f64;
+    let (model, boundary) = match BoundaryConditions::resolve_held(system, &held, h0) {
+        Ok(found) => found,
+        Err(BoundaryError::Parameter { name, reason }) => return Err((name, reason)),
+        // The solve itself tells of other mistakes.
+        Err(_) => return Ok(()),
+    };
+    for varied in &control.varied {
+        let reason = match &varied.of {
+            VariedOf::Duration => of_duration(system, control, &boundary).map(str::to_owned),
+            VariedOf::StartJoint(_) if remembers(system) => Some(
+                "the memory of Maxwell branches at the start follows it, which is not offered"
+                    .to_owned(),
+            ),
+            VariedOf::StartJoint(_) if model.coordinates == Coordinates::Redundant => {
+                Some("it is offered in joint coordinates, without constraints, alone".to_owned())
+            }
+            _ => None,
+        };
+        if let Some(reason) = reason {
+            return Err((varied.name.clone(), reason));
+        }
+    }
+    Ok(())
+}
+
+/// The reason why the derivative by a given duration is not known, if there is one.
+fn of_duration(
+    system: &System,
+    control: &Control,
+    boundary: &BoundaryConditions,
+) -> Option<&'static str> {
+    let given = control.given.values().all(|signal| signal.is_constant());
+    let moves = system.joints.iter().any(|joint| joint.motion.is_some());
+    let is_function = control.course.is_some() || !given || moves;
+    let mut limits = boundary.limits.list.iter();
+    let is_rate = limits.any(|one| {
+        let quantity = &one.quantity;
+        one.rate.is_some() || quantity.is_step() || quantity.before().is_some()
+    });
+    match (is_function, is_rate) {
+        (true, _) => Some("given functions of time do not stretch with it, which is not offered"),
+        (_, true) => {
+            Some("limits of rates, currents or reactions count time by it, which is not offered")
+        }
+        _ => None,
+    }
+}
+
+/// Returns true if a material has Maxwell branches.
+fn remembers(system: &System) -> bool {
+    let of_muscles = system.muscles.iter().map(|muscle| &muscle.material);
+    let of_blocks = system.solids.iter().flat_map(|solid| &solid.materials);
+    let mut all = of_muscles.chain(of_blocks);
+    all.any(|material| !material.maxwell.list().is_empty())
 }

@@ -186,7 +186,12 @@ pub fn integrate_on(
                 None => &drive,
             };
             let (motion, failure) = go_on(task.solving, &model, begun, lengths, drive, observer);
-            Found::without_error(motion, failure)
+            Found {
+                discrete: motion,
+                failure,
+                error: None,
+                stopped: None,
+            }
         }
     };
     let seconds = began.elapsed().as_secs_f64() - setup;

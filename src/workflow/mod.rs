@@ -51,7 +51,7 @@ pub use optimum::{
 pub use program::Counted;
 pub use reasons::{Absent, Cause, absent};
 pub use remark::{Remark, Remarks, Severity, listen_to_phases};
-pub use resimulate::{Resimulation, under_constant_voltages};
+pub use resimulate::Resimulation;
 pub use tolerance::EstimatedError;
 pub use tracking::{FinalValue, Tracked, TrackedPath, TrackingError, followed, tracked};
 pub use warnings::{Outside, beyond, counted, divided};

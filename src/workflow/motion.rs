@@ -190,13 +190,8 @@ impl Distance {
         out
     }
 
-    /// The longest path of a joint, and of a body or a node, along a motion.
-    pub(crate) fn path_length(model: &Model, motion: &Solution) -> Self {
-        Self::path_length_by(model, motion, 1)
-    }
-
-    /// The same over every `stride`th instant.
-    pub(crate) fn path_length_by(model: &Model, motion: &Solution, stride: usize) -> Self {
+    /// The longest path of a joint, and of a body or a node, over every `stride`th instant of a motion.
+    pub(crate) fn path_length(model: &Model, motion: &Solution, stride: usize) -> Self {
         let mut lengths: Vec<(DistanceKind, f64)> = Vec::new();
         for k in (stride..motion.times.len()).step_by(stride) {
             each(model, motion, k - stride, motion, k, |i, kind, apart| {

@@ -179,7 +179,7 @@ impl Optimum {
         if self.is_solved() {
             let path_length = match &self.resimulation {
                 Some(tested) => tested.path_length,
-                None => Distance::path_length(&self.model, &self.motion),
+                None => Distance::path_length(&self.model, &self.motion, 1),
             };
             self.afterwards = afterwards(&self.model, control, &self.motion, path_length);
             let start = &self.boundary.start;

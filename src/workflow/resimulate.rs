@@ -8,7 +8,6 @@
 use crate::control::problem::Control;
 use crate::control::{BoundaryConditions, Solution};
 use crate::dynamics::{DiscreteTrajectory, Start, StepError, simulate};
-use crate::math::Signal;
 use crate::model::system::JointKind;
 use crate::model::{Model, OPEN};
 use crate::stop;
@@ -97,7 +96,7 @@ pub(crate) fn resimulate(
     optimal: &Solution,
     tolerance: f64,
 ) -> Resimulation {
-    let path_length = Distance::path_length(model, optimal);
+    let path_length = Distance::path_length(model, optimal, 1);
     let repeat = |steps: usize| Repeat::from_solution(model, control, start, optimal, steps);
     let own = repeat(1);
     let mut out = Resimulation {
@@ -117,7 +116,7 @@ pub(crate) fn resimulate(
     if own.failure.is_some() || out.cause.is_some() {
         return out;
     }
-    let least = match own.is_halved {
+    let least = match own.discrete.report.halved > 0 {
         true => own.greatest().over(path_length, model),
         false => 0.0_f64,
     };
@@ -160,7 +159,8 @@ impl Resimulation {
             }
             greatest = greatest.max(deviation);
             // An optimum on a coarse grid may zigzag: its own path says little of the motion that it stands for.
-            self.path_length = self.path_length.min(repeat.path_length(model, steps));
+            let own_length = Distance::path_length(model, &repeat.motion, steps);
+            self.path_length = self.path_length.min(own_length);
             let apart = match &before {
                 Some((coarse, _)) => coarse.apart(model, &repeat),
                 None => deviation,
@@ -247,18 +247,6 @@ impl Resimulation {
     }
 }
 
-/// The motion under the constant voltages of the goal, for `durations` times as long as the optimal one.
-pub fn under_constant_voltages(
-    model: &Model,
-    boundary: &BoundaryConditions,
-    optimal: &Solution,
-    durations: usize,
-) -> Option<(DiscreteTrajectory, Option<StepError>)> {
-    let (start, voltages) = (&boundary.start, boundary.rest[1].as_ref()?);
-    let go_on = || ControlFlow::Continue(());
-    Some(constant(model, start, optimal, voltages, durations, go_on))
-}
-
 /// A distance that grows by this factor within one step is no growth of rounding.
 const JUMP: f64 = 1e3;
 
@@ -269,8 +257,6 @@ pub(crate) struct Repeat {
     /// Distances from the optimum at its instants, as far as it goes.
     distances: Vec<Distance>,
     pub(crate) failure: Option<String>,
-    /// True if some of its steps had to be halved.
-    pub(crate) is_halved: bool,
 }
 
 impl Repeat {
@@ -284,7 +270,10 @@ impl Repeat {
     ) -> Self {
         let n = optimal.intervals();
         let h = optimal.times[n] / n as f64;
-        let given = given_functions(control, model, steps);
+        // Steps shorter than an interval resolve functions of time better than the optimum does.
+        let sources = (0..model.sources.len()).filter(|_| steps > 1);
+        let scalar = |source| Some((model.variables.input(source)?, control.function(source)?));
+        let given: Vec<_> = sources.filter_map(scalar).collect();
         let scalars = |from: f64, to: f64| {
             let time = 0.5 * (from + to);
             let k = (time / h) as usize;
@@ -301,7 +290,6 @@ impl Repeat {
         let of = |k: usize| Distance::between(model, &motion, steps * k, optimal, k);
         let ended = (discrete.intervals() < steps * n).then(|| "interrupted".to_owned());
         Self {
-            is_halved: discrete.report.halved > 0,
             distances: instants.map(of).collect(),
             failure: failure.map(|error| error.to_string()).or(ended),
             discrete,
@@ -317,11 +305,6 @@ impl Repeat {
         all.fold(Distance::default(), Distance::max)
     }
 
-    /// Path length over the instants of the optimum, each of whose intervals has this number of steps.
-    pub(crate) fn path_length(&self, model: &Model, steps: usize) -> Distance {
-        Distance::path_length_by(model, &self.motion, steps)
-    }
-
     pub(crate) fn greatest(&self) -> Distance {
         let all = self.distances.iter().copied();
         all.fold(Distance::default(), Distance::max)
@@ -329,7 +312,7 @@ impl Repeat {
 
     /// Returns the reason why a simulation with the step of the optimum is another motion, where it is by more than `same`.
     pub(crate) fn cause(&self, model: &Model, optimal: &Solution, same: f64) -> Option<Cause> {
-        if self.is_halved && self.failure.is_none() {
+        if self.discrete.report.halved > 0 && self.failure.is_none() {
             return None;
         }
         let sizes: Vec<f64> = self.distances.iter().map(|d| d.size(model)).collect();
@@ -355,17 +338,6 @@ impl Repeat {
             distance: self.greatest(),
         })
     }
-}
-
-/// Scalars of an interval that are functions of time, which steps shorter than an interval resolve better than the optimum does.
-fn given_functions<'a>(
-    control: &'a Control,
-    model: &Model,
-    steps: usize,
-) -> Vec<(usize, &'a Signal)> {
-    let sources = (0..model.sources.len()).filter(|_| steps > 1);
-    let scalar = |source| Some((model.variables.input(source)?, control.function(source)?));
-    sources.filter_map(scalar).collect()
 }
 
 /// The joint that turns farthest in the interval that ends at instant `k`.

@@ -168,14 +168,15 @@ impl Solves<'_, '_> {
             }
             gap = found;
             tracing::info!(?status, objective, left = gap.left, "confirmation");
-            let again = SolverResult {
+            let mut again = SolverResult {
                 status: match status {
                     Status::Solved => status,
                     _ => Status::Acceptable,
                 },
                 ..again
             };
-            solution = one_of_both(solution, again);
+            put_before(&mut again, &solution);
+            solution = again;
             if !status.is_optimal() {
                 break;
             }
@@ -214,16 +215,6 @@ fn guess(discrete: DiscreteTrajectory) -> InitialGuess {
         costates: None,
         carried: Carried::default(),
     }
-}
-
-/// The better of two solves, with the iterations, evaluations and seconds of both.
-fn one_of_both(mut first: SolverResult, mut second: SolverResult) -> SolverResult {
-    if second.status.is_solved() {
-        put_before(&mut second, &first);
-        return second;
-    }
-    put_after(&mut first, &second);
-    first
 }
 
 /// Adds iterations, evaluations and seconds of an earlier solve.

@@ -53,18 +53,6 @@ pub(crate) struct Found {
     pub(crate) stopped: Option<Status>,
 }
 
-impl Found {
-    /// A motion whose error nothing asks for.
-    pub(crate) fn without_error(discrete: DiscreteTrajectory, failure: Option<StepError>) -> Self {
-        Self {
-            discrete,
-            failure,
-            error: None,
-            stopped: None,
-        }
-    }
-}
-
 impl ByTolerance<'_> {
     /// The motion resumed from where it has `begun`, or one in shorter steps whose error is confirmed to be below the tolerance.
     pub(crate) fn run(

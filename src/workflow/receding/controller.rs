@@ -365,6 +365,7 @@ impl Shift {
         let n = program.layout.width();
         let (end, _) = program.layout.coordinates[(program.layout.intervals - 1) * n];
         let between = program.between.iter().copied();
+        let last = program.layout.driven[program.layout.intervals - 1].iter();
         Self {
             columns: successors(columns, |column| match column {
                 Column::Instant { k, i } => Column::Instant { k: k + parts, i },
@@ -381,7 +382,7 @@ impl Shift {
                 other => other,
             }),
             between: between.filter(|(_, [from, _], _)| *from >= end).collect(),
-            last: program.layout.last_inputs().collect(),
+            last: last.map(|input| input.column).collect(),
         }
     }
 

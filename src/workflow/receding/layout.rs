@@ -149,12 +149,6 @@ impl<'m> Layout<'m> {
     pub(super) fn width(&self) -> usize {
         self.coordinates.len() / (self.intervals + 1)
     }
-
-    /// Columns of the inputs of the last interval.
-    pub(super) fn last_inputs(&self) -> impl Iterator<Item = usize> {
-        let last = self.driven.last().into_iter().flatten();
-        last.map(|input| input.column)
-    }
 }
 
 /// The first place of each entry of a list.

@@ -33,9 +33,8 @@ pub(super) struct Program<'m> {
     /// Column here of each one of the transcription, and their values there.
     own: Vec<usize>,
     point: Vec<f64>,
-    /// Columns and rows of the motion.
+    /// Columns of the motion.
     of_columns: Vec<Column>,
-    of_rows: Vec<Row>,
     /// Columns of coordinates within an interval, with those at both of its ends, and the part of it that has passed there.
     pub(super) between: Vec<Between>,
     /// Number of columns of the motion.
@@ -75,7 +74,6 @@ impl<'m> Program<'m> {
         let unknowns = motion.unknowns();
         let scalars: Vec<usize> = steered.inputs.iter().map(|&(s, _)| s).collect();
         let (own, of_columns) = held_over_parts(&unknowns.columns, &scalars, parts);
-        let of_rows = unknowns.rows.clone();
         let columns = of_columns.len();
         let squares = motion.squares();
         let of_squares = Squares::of(&motion, squares.clone());
@@ -112,7 +110,6 @@ impl<'m> Program<'m> {
             own,
             between: between(&of_columns, parts),
             of_columns,
-            of_rows,
             columns,
             begin: 0,
         };
@@ -206,7 +203,7 @@ impl<'m> Program<'m> {
 
     /// Columns and rows of the motion.
     pub(super) fn numbers(&self) -> (&[Column], &[Row]) {
-        (&self.of_columns, &self.of_rows)
+        (&self.of_columns, &self.motion.program.unknowns().rows)
     }
 
     /// Values of the columns of the transcription.
