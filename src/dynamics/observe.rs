@@ -11,8 +11,8 @@
 
 use crate::coordinates::{Configuration, Interval, Scratch};
 use crate::dynamics::energies::{Work, energies};
-use crate::dynamics::momenta::{Places, momentum_maps, moving, vector_momenta};
-use crate::dynamics::part_columns::{AtInstant, PartColumns, reactions};
+use crate::dynamics::momenta::{Kinetic, Places, momentum_maps, moving, vector_momenta};
+use crate::dynamics::part_columns::{PartColumns, momentum, rates_at, reactions};
 use crate::dynamics::trajectory::{
     Column, DiscreteTrajectory, Observations, Reading, Side, Trajectory, sides,
 };
@@ -126,7 +126,8 @@ struct Observer<'m> {
     before: Configuration,
     here: Configuration,
     scratch: Scratch,
-    at_instant: AtInstant<'m>,
+    /// Made where rates follow from momenta under constraints.
+    kinetic: Option<Kinetic<'m>>,
     parts: PartColumns,
     /// Effects of forces on joint coordinates on the whole system.
     pulls: Vec<[Vector; 2]>,
@@ -139,7 +140,7 @@ impl<'m> Observer<'m> {
             before: model.action.map.instant(),
             here: model.action.map.instant(),
             scratch: model.action.scratch(Order::Gradient),
-            at_instant: AtInstant::new(model),
+            kinetic: None,
             parts: PartColumns::new(model),
             pulls: model.pulls(),
         }
@@ -270,11 +271,9 @@ impl<'m> Observer<'m> {
 
     /// Kinetic energy ½ p·v at instant k, and the momenta of all vectors with its rates v.
     fn moves(&mut self, discrete: &DiscreteTrajectory, k: usize) -> (f64, Vec<Vector>) {
-        let momentum = self
-            .at_instant
-            .momentum(discrete, k, &self.here, &mut self.scratch);
-        let at_instant = &mut self.at_instant;
-        let rates = at_instant.rates(discrete, k, &mut self.here, &momentum);
+        let momentum = momentum(self.model, discrete, k, &self.here, &mut self.scratch);
+        let (kinetic, here) = (&mut self.kinetic, &mut self.here);
+        let rates = rates_at(self.model, kinetic, discrete, k, here, &momentum);
         let products = momentum.iter().zip(&rates).map(|(p, v)| p * v);
         let kinetic = 0.5 * products.sum::<f64>();
         (kinetic, moving(self.model, &mut self.here, &rates))

@@ -28,7 +28,6 @@ use crate::model::term_order::{rank, settle};
 use crate::model::terms::GRAVITY;
 use crate::model::terms::constraints::Constraints;
 use crate::model::terms::field_extent;
-use crate::model::terms::joint_forces;
 use crate::model::terms::loads;
 use nalgebra::Vector3;
 use std::collections::BTreeSet;
@@ -252,8 +251,8 @@ impl Construction<'_> {
         if self.system.gravity.is_none() {
             terms.without(GRAVITY, "the scene names no gravity");
         }
-        joint_forces::build_dampers(self, &mut terms);
-        joint_forces::build_springs(self, &mut terms);
+        body::build_dampers(self, &mut terms);
+        body::build_springs(self, &mut terms);
         loads::build(self, &mut terms);
         self.system.components.build(&mut terms);
         let (terms, present, left_out) = terms.finish(rank);

@@ -16,6 +16,7 @@ mod terms;
 
 pub use analysis::{Analysis, Coordinates, InitiallyMoving, ModelError};
 pub use components::Component;
+pub use components::body::DAMPING as JOINT_DAMPING;
 pub use constants::constant::{
     Constant, Follower, FoundParameter, MaterialConstant, MaterialOf, Parameter, SiUnit,
 };
@@ -23,8 +24,8 @@ pub use constants::free_parameters::{Read, Sought};
 pub use constants::parameter::{
     NotSought, check as check_parameters, unit as unit_of, with_parameters,
 };
+pub use construction::Freedom;
 pub use layout::joint_sections::JointSection;
-pub use layout::named::Freedom;
 pub(crate) use layout::node_grids::has_nodes_alone;
 pub use layout::node_grids::{NoGrids, NodeGrids};
 pub use layout::solid_block::SolidBlock;
@@ -44,5 +45,4 @@ pub use system::check::{MOST_ELEMENTS, SystemError, check_axes, check_elements};
 pub use system::joints::{JointReading, Prescribed, Screw, nearest_turn};
 pub use system::maxwell::{MOST_BRANCHES, MaxwellBranch, MaxwellBranches, NO_BRANCHES, Response};
 pub use system::{System, VACUUM_PERMITTIVITY};
-pub use terms::joint_forces::DAMPING as JOINT_DAMPING;
 pub use terms::{LeftOut, Present, Terms, mid, rate};

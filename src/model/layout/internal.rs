@@ -32,19 +32,11 @@ pub(crate) enum InternalKind {
     /// The coordinate of a joint of the presolved system.
     Joint(usize),
     /// The logarithm of the viscous stretch of a Maxwell branch of a muscle: an internal variable that relaxes under constant stretch.
-    Branch {
-        /// The muscle.
-        muscle: usize,
-        /// Its branch.
-        branch: usize,
-    },
+    Branch { muscle: usize, branch: usize },
     /// A coordinate of the viscous strain of a Maxwell branch at a Gauss point of a block: what the block remembers.
     Strain {
-        /// The block.
         block: usize,
-        /// Its element.
         element: usize,
-        /// The Gauss point.
         point: usize,
         /// Number of the coordinate among those of the strain.
         component: usize,
@@ -61,23 +53,27 @@ impl InternalKind {
 }
 
 impl Internal {
+    fn new(name: String, kind: InternalKind) -> Self {
+        let size = Size::One;
+        Self { name, size, kind }
+    }
+
     fn of_joint(index: usize, joint: &Joint) -> Self {
-        Self {
-            name: format!("coordinate of {}", joint.name),
-            size: match joint.kind {
-                JointKind::Prismatic { .. } => Size::Length,
-                _ => Size::One,
-            },
-            kind: InternalKind::Joint(index),
+        let name = format!("coordinate of {}", joint.name);
+        let mut own = Self::new(name, InternalKind::Joint(index));
+        if let JointKind::Prismatic { .. } = joint.kind {
+            own.size = Size::Length;
         }
+        own
     }
 
     fn of_branch(name: &str, muscle: usize, branch: usize) -> Self {
-        Self {
-            name: format!("logarithm of viscous stretch {} of {name}", branch + 1),
-            size: Size::One,
-            kind: InternalKind::Branch { muscle, branch },
-        }
+        let name = format!("logarithm of viscous stretch {} of {name}", branch + 1);
+        Self::new(name, InternalKind::Branch { muscle, branch })
+    }
+
+    fn of_charge(name: &str, source: usize) -> Self {
+        Self::new(format!("charge of {name}"), InternalKind::Charge(source))
     }
 
     /// Those of the viscous strains of the branches of an element, branch by branch and point by point.
@@ -85,29 +81,21 @@ impl Internal {
         let branches = 0..of.material(element).maxwell.list().len();
         let points = branches.flat_map(|branch| (0..POINTS).map(move |point| (branch, point)));
         let all = points.flat_map(|at| (0..COORDINATES).map(move |component| (at, component)));
-        all.map(move |((branch, point), component)| Self {
-            name: format!(
+        all.map(move |((branch, point), component)| {
+            let name = format!(
                 "viscous strain {} of branch {} at point {point} of element {element} of {}",
                 component + 1,
                 branch + 1,
                 of.solid.name
-            ),
-            size: Size::One,
-            kind: InternalKind::Strain {
+            );
+            let kind = InternalKind::Strain {
                 block,
                 element,
                 point,
                 component,
-            },
+            };
+            Self::new(name, kind)
         })
-    }
-
-    fn of_charge(name: &str, muscle: usize) -> Self {
-        Self {
-            name: format!("charge of {name}"),
-            size: Size::One,
-            kind: InternalKind::Charge(muscle),
-        }
     }
 }
 

@@ -2,7 +2,6 @@
 
 pub(super) mod internal;
 pub(super) mod joint_sections;
-pub(super) mod named;
 pub(super) mod node_grids;
 pub(super) mod solid_block;
 pub(super) mod solids;

@@ -65,18 +65,12 @@ impl Model {
             found[unknown] = true;
         }
         let other = |unknown: usize| NoGrids::Other(self.variables.unknown(unknown).to_string());
-        for (list, block) in lists.iter_mut().zip(&self.solids) {
-            for (unknowns, terminal) in list.iter_mut().zip(&block.terminals) {
-                let scalar = terminal.and_then(|terminal| terminal.scalar);
-                let Some(unknown) = scalar.and_then(|(s, _)| self.variables.place(s)) else {
-                    continue;
-                };
-                // An electrode is at many nodes.
-                if std::mem::replace(&mut found[unknown], true) {
-                    return Err(other(unknown));
-                }
-                unknowns[3] = Some(unknown as u32);
+        for (block, node, unknown) in self.potentials_of_nodes() {
+            // An electrode is at many nodes.
+            if std::mem::replace(&mut found[unknown], true) {
+                return Err(other(unknown));
             }
+            lists[block][node][3] = Some(unknown as u32);
         }
         if let Some(unknown) = found.iter().position(|found| !found) {
             return Err(other(unknown));
@@ -137,16 +131,25 @@ impl Model {
             *place = Some(self.nodes[node].reference.into());
         }
         let mut readers = vec![0; places.len()];
-        for block in &self.solids {
-            for (terminal, at) in block.terminals.iter().zip(&block.solid.mesh.nodes) {
-                let scalar = terminal.and_then(|terminal| terminal.scalar);
-                if let Some(unknown) = scalar.and_then(|(s, _)| self.variables.place(s)) {
-                    readers[unknown] += 1;
-                    // An electrode is at many places.
-                    places[unknown] = (readers[unknown] == 1).then_some((*at).into());
-                }
-            }
+        for (block, node, unknown) in self.potentials_of_nodes() {
+            let at = self.solids[block].solid.mesh.nodes[node];
+            readers[unknown] += 1;
+            // An electrode is at many places.
+            places[unknown] = (readers[unknown] == 1).then_some(at.into());
         }
         places
+    }
+
+    /// Block, node and unknown of a step of the nodes whose potential is unknown.
+    fn potentials_of_nodes(&self) -> impl Iterator<Item = (usize, usize, usize)> + '_ {
+        let blocks = self.solids.iter().enumerate();
+        let nodes = blocks.flat_map(|(b, block)| {
+            let terminals = block.terminals.iter().enumerate();
+            terminals.map(move |(node, terminal)| (b, node, terminal))
+        });
+        nodes.filter_map(|(block, node, terminal)| {
+            let (scalar, _) = (*terminal)?.scalar?;
+            Some((block, node, self.variables.place(scalar)?))
+        })
     }
 }

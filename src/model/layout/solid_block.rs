@@ -7,7 +7,7 @@ use crate::energy::NeoHooke;
 use crate::functional::ScalarArg;
 use crate::math::{Matrix, Vector};
 use crate::model::constants::constant::{Constant, MaterialConstant};
-use crate::model::system::{ElectricConstants, Electrode, ElementKind, Material, Potential, Solid};
+use crate::model::system::{Electrode, ElementKind, Material, Potential, Solid};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -145,19 +145,9 @@ impl SolidBlock {
 
     /// The neo-Hookean law of a dielectric element.
     pub fn dielectric(&self, element: usize) -> Elastomer<Dielectric> {
-        let ElectricConstants {
-            c1,
-            c2,
-            permittivity,
-        } = self
-            .material(element)
-            .electric
-            .expect("a dielectric element has electric constants");
-        self.passive(element).with(Dielectric {
-            c1,
-            c2,
-            permittivity,
-        })
+        let electric = self.material(element).electric;
+        let electric = electric.expect("a dielectric element has electric constants");
+        self.passive(element).with(electric)
     }
 
     /// Vector of the node nearest to a place.

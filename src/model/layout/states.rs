@@ -1,17 +1,17 @@
 //! Coordinates and rates of states that are given by joints, poses and velocities of bodies.
 
 use crate::coordinates::Configuration;
-use crate::energy::{Angle, Energy, Projection};
+use crate::energy::{Angle, Capacitance, Energy, Projection};
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::{Derivatives, Jet, Local, Matrix, Vector};
 use crate::model::analysis::Coordinates;
 use crate::model::components::{capacitance, muscle};
+use crate::model::layout::internal::InternalKind;
 use crate::model::model::Model;
 use crate::model::quantities::quantity::MEGAVOLT_PER_METRE;
+use crate::model::system::Fidelity;
 use crate::model::system::circuit::Circuit;
-use crate::model::system::joints::{JointCoordinate, JointReading};
-use crate::model::system::{Fidelity, Muscle};
-use crate::model::terms::charged::{ChargePlace, Charged};
+use crate::model::system::joints::JointCoordinate;
 use nalgebra::SVector;
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -155,11 +155,11 @@ impl Model {
             }
             Coordinates::Redundant => {
                 let joint = &self.presolved.system.joints[index];
-                let reading = JointReading::new(joint, None, &self.reference);
+                let coordinate = JointCoordinate::new(joint, &self.reference);
                 let bodies = instant.l.chunks_exact(12);
                 let bodies = bodies.take(self.presolved.system.bodies.len());
                 let rates: Vec<Pose> = bodies.map(pose).collect();
-                reading.rate(&self.condensed_poses(instant), &rates)
+                coordinate.map_or(0.0, |of| of.rate(&self.condensed_poses(instant), &rates))
             }
         }
     }
@@ -173,21 +173,20 @@ fn pose(q: &[f64]) -> Pose {
     }
 }
 
-impl JointReading {
-    /// Rate of the coordinate at poses with these rates; zero where there is no coordinate.
+impl JointCoordinate {
+    /// Its rate at poses with these rates.
     fn rate(&self, poses: &[Pose], rates: &[Pose]) -> f64 {
-        match &self.measure {
-            JointCoordinate::Angle { vectors } => {
+        match self {
+            Self::Angle { vectors } => {
                 let [p, w] = at_and_rates::<9>(vectors, poses, rates);
                 let angle: Jet<9, 3> = Angle { near: 0.0 }.at(&p, &w);
                 angle.value_w
             }
-            JointCoordinate::Displacement { axis, span } => {
+            Self::Displacement { axis, span } => {
                 let [p, w] = at_and_rates::<6>([axis, span], poses, rates);
                 let displacement: Jet<6, 3> = Projection.at(&p, &w);
                 displacement.value_w
             }
-            JointCoordinate::None => 0.0,
         }
     }
 }
@@ -218,51 +217,109 @@ pub struct MuscleReading {
     /// Coordinates of its Maxwell branches.
     branches: Vec<usize>,
     /// Its charge, where it has one instead of the voltage of a source.
-    charged: Option<Charged>,
+    charge: Option<ChargePlace>,
+    capacitance: Option<Capacitance>,
     /// The scalar of its source, where that is ever other than zero.
     input: Option<usize>,
+}
+
+/// Place of a charge.
+#[derive(Clone, Copy, Debug)]
+enum ChargePlace {
+    /// A coordinate, in the unit of the muscle: behind a resistor.
+    Coordinate(usize),
+    /// A scalar of the intervals: an input.
+    Input(usize),
 }
 
 impl Model {
     /// The lumped muscles.
     pub fn muscle_readings(&self) -> Vec<MuscleReading> {
-        let lumped = self.system.muscles.iter().enumerate();
-        let lumped = lumped.filter(|(_, muscle)| muscle.fidelity == Fidelity::Lumped);
-        let readings = lumped.map(|(m, _)| MuscleReading {
-            muscle: m,
-            branches: self.branches_of(m),
-            charged: self.charged().find(|charged| charged.muscle == m),
-            input: self.variables.input(m),
-        });
-        readings.collect()
+        let muscles = 0..self.system.muscles.len();
+        muscles.filter_map(|m| self.muscle_reading(m)).collect()
+    }
+
+    fn muscle_reading(&self, index: usize) -> Option<MuscleReading> {
+        let muscle = &self.system.muscles[index];
+        let capacitance = capacitance(muscle);
+        (muscle.fidelity == Fidelity::Lumped).then(|| MuscleReading {
+            muscle: index,
+            branches: self.branches_of(index),
+            charge: capacitance.and_then(|_| self.charge_place(index)),
+            capacitance,
+            input: self.variables.input(index),
+        })
+    }
+
+    fn charge_place(&self, muscle: usize) -> Option<ChargePlace> {
+        let mut internals = self.internal_kinds();
+        let behind = internals.find(|(_, kind)| *kind == InternalKind::Charge(muscle));
+        let given = || self.variables.input(self.system.charge_of(muscle)?);
+        match behind {
+            Some((coordinate, _)) => Some(ChargePlace::Coordinate(coordinate)),
+            None => given().map(ChargePlace::Input),
+        }
+    }
+
+    /// Muscles behind resistors, then those whose charge is given.
+    fn charged(&self) -> impl Iterator<Item = MuscleReading> {
+        let is_given = |one: &MuscleReading| matches!(one.charge, Some(ChargePlace::Input(_)));
+        let muscles = 0..self.system.muscles.len();
+        let charged = muscles.filter(|&m| self.charge_place(m).is_some());
+        let readings = charged.filter_map(|m| self.muscle_reading(m));
+        let readings = readings.filter(|reading| reading.charge.is_some());
+        let mut readings: Vec<_> = readings.collect();
+        readings.sort_by_key(is_given);
+        readings.into_iter()
+    }
+
+    /// Names of the columns of [`electrode_voltages`](Self::electrode_voltages).
+    pub fn electrodes(&self) -> impl Iterator<Item = String> + '_ {
+        let name = |of: MuscleReading| format!("{}_voltage", self.system.muscles[of.muscle].name);
+        self.charged().map(name)
+    }
+
+    /// Voltage Q/C in V of each muscle with a charge Q instead of the voltage of a source, at an instant and under the scalars of an
+    /// interval beside it.
+    pub fn electrode_voltages(&self, instant: &Configuration, scalars: &[f64]) -> Vec<f64> {
+        let voltage = |of: MuscleReading| of.voltage(self, instant, scalars);
+        self.charged().filter_map(voltage).collect()
     }
 }
 
 impl MuscleReading {
     /// Returns true if there is a voltage between its electrodes, so that it has a field.
     pub fn has_voltage(&self) -> bool {
-        self.charged.is_some() || self.input.is_some()
+        self.charge.is_some() || self.input.is_some()
     }
 
     /// Returns true if a source supplies its charge.
     pub fn has_source(&self) -> bool {
-        match self.charged {
-            Some(charged) => matches!(charged.place, ChargePlace::Coordinate(_)),
+        match self.charge {
+            Some(place) => matches!(place, ChargePlace::Coordinate(_)),
             None => self.input.is_some(),
         }
     }
 
     /// The scalar of its source, whose voltage its electrodes have.
     fn direct(&self) -> Option<usize> {
-        self.input.filter(|_| self.charged.is_none())
+        self.input.filter(|_| self.charge.is_none())
     }
 
+    /// Voltage of its electrodes: Q/C of a charge Q.
     fn voltage(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> Option<f64> {
-        let of = &model.system.muscles[self.muscle];
-        match self.charged {
-            Some(charged) => Some(charged.voltage(model, at, scalars)),
-            None => Some(of.voltage_at_rest(scalars[self.input?])),
-        }
+        let charge = match self.charge {
+            None => {
+                let of = &model.system.muscles[self.muscle];
+                return Some(of.voltage_at_rest(scalars[self.input?]));
+            }
+            Some(ChargePlace::Coordinate(coordinate)) => {
+                at.z[coordinate] * self.capacitance?.unit_of_charge()
+            }
+            Some(ChargePlace::Input(scalar)) => scalars[scalar],
+        };
+        let length = at.x[model.spans[self.muscle]].norm();
+        Some(charge / self.capacitance?.at_length(length))
     }
 
     /// Force in N with which it pulls its ends together: of elasticity, voltage, viscosity and Maxwell branches.
@@ -286,17 +343,19 @@ impl MuscleReading {
     pub fn flow(&self, model: &Model, at: &Configuration, scalars: &[f64]) -> Option<[f64; 2]> {
         let of = &model.system.muscles[self.muscle];
         let span = model.spans[self.muscle];
-        let (voltage, current) = match self.charged {
+        let (voltage, current) = match self.charge {
             None => {
                 let voltage = scalars[self.input?];
-                let charging = voltage * capacitance_rate(of, [&at.x[span], &at.w[span]])?;
+                let [r, rate] = [&at.x[span], &at.w[span]];
+                let capacitance = self.capacitance?.at::<1>(r, &SVector::zeros());
+                let charging = voltage * capacitance.plain::<1>().force(0).dot(rate);
                 let leak = of.circuit.as_ref().and_then(Circuit::leak_conductance);
                 (voltage, leak.map_or(charging, |g| charging + g * voltage))
             }
-            Some(_) if !self.has_source() => return None,
-            Some(charged) => {
+            Some(ChargePlace::Input(_)) => return None,
+            Some(ChargePlace::Coordinate(_)) => {
                 let voltage = self.input.map_or(0.0, |scalar| scalars[scalar]);
-                let across = charged.voltage(model, at, scalars);
+                let across = self.voltage(model, at, scalars)?;
                 (voltage, (voltage - across) / of.circuit?.resistance?)
             }
         };
@@ -331,13 +390,6 @@ impl MuscleReading {
 
     fn capacitance(&self, model: &Model, at: &Configuration) -> f64 {
         let length = at.x[model.spans[self.muscle]].norm();
-        let of = capacitance(&model.system.muscles[self.muscle]);
-        of.map_or(0.0, |of| of.at_length(length))
+        self.capacitance.map_or(0.0, |of| of.at_length(length))
     }
-}
-
-/// ∂C/∂r·ṙ in mC/(V ms) of a span and its rate.
-fn capacitance_rate(muscle: &Muscle, [r, rate]: [&Vector; 2]) -> Option<f64> {
-    let local = capacitance(muscle)?.at::<1>(r, &SVector::zeros());
-    Some(local.plain::<1>().force(0).dot(rate))
 }

@@ -22,10 +22,8 @@ pub enum BodyLocation {
     Welded {
         /// The body.
         to: usize,
-        /// Its centre of mass in the directors of that body, from the centre there.
-        centre: Vector,
-        /// Its directors relative to those.
-        directors: Matrix,
+        /// Its pose in the directors of that body, from the centre there.
+        at: Pose,
     },
     /// It is fixed to the ground, or nothing moves it.
     Ground,
@@ -70,11 +68,11 @@ impl Presolved {
             Some(to) if bodies[to] == *body => BodyLocation::Body(to),
             Some(to) => {
                 let pose = bodies[to].pose();
-                BodyLocation::Welded {
-                    to,
+                let at = Pose {
                     centre: pose.local(&body.centre),
                     directors: pose.directors.tr_mul(&body.directors),
-                }
+                };
+                BodyLocation::Welded { to, at }
             }
         };
         let places = system.bodies.iter().enumerate().map(place).collect();
@@ -111,13 +109,9 @@ impl Presolved {
         let pose = |(place, body): (&BodyLocation, &Body)| match *place {
             BodyLocation::Ground => body.pose(),
             BodyLocation::Body(b) => poses[b],
-            BodyLocation::Welded {
-                to,
-                centre,
-                directors,
-            } => Pose {
-                centre: poses[to].point(&centre),
-                directors: poses[to].directors * directors,
+            BodyLocation::Welded { to, at } => Pose {
+                centre: poses[to].point(&at.centre),
+                directors: poses[to].directors * at.directors,
             },
         };
         self.bodies.iter().zip(reference).map(pose).collect()
@@ -144,16 +138,10 @@ impl Presolved {
             match *place {
                 BodyLocation::Ground => {}
                 BodyLocation::Body(b) => presolved[b] = *pose,
-                BodyLocation::Welded {
-                    to,
-                    centre,
-                    directors,
-                } => {
-                    let directors = pose.directors * directors.transpose();
-                    presolved[to] = Pose {
-                        centre: pose.centre - directors * centre,
-                        directors,
-                    };
+                BodyLocation::Welded { to, at } => {
+                    let directors = pose.directors * at.directors.transpose();
+                    let centre = pose.centre - directors * at.centre;
+                    presolved[to] = Pose { centre, directors };
                 }
             }
         }

@@ -18,7 +18,7 @@ use crate::model::construction::Construction;
 use crate::model::layout::variables::Role;
 use crate::model::quantities::quantity::Quantity;
 use crate::model::quantities::what::{At, FieldPlace, Of, Pulling, Region, What};
-use crate::model::system::joints::{JointCoordinate, JointReading};
+use crate::model::system::joints::JointCoordinate;
 use crate::model::system::{Amount, Attachment, Marker};
 use crate::model::terms::Present;
 use crate::model::terms::constraints::GLUE;
@@ -251,7 +251,7 @@ impl<'k> Reading<'k, '_> {
         let joint = &self.known.presolved.system.joints[joint];
         let is_step = self.quantity.is_step();
         let both = [Stencil::Here, Stencil::Next];
-        match JointReading::new(joint, None, self.known.reference).measure {
+        match JointCoordinate::new(joint, self.known.reference)? {
             JointCoordinate::Angle { vectors } => {
                 let vectors = vectors.map(|x| self.vectors.index(x));
                 if !is_step {
@@ -268,7 +268,6 @@ impl<'k> Reading<'k, '_> {
                 let [[n, r], [m, s]] = both.map(|at| vectors.map(|vector| at.of(vector)));
                 self.formula::<_, 12, 4, 0>(ProjectionStep, [n, r, m, s], [])
             }
-            JointCoordinate::None => None,
         }
     }
 

@@ -5,6 +5,7 @@ use crate::functional::{
     Displacement, Impulse, LawElement, Measure, Stencil, Sum, Term, TermKind, VectorArg,
 };
 use crate::math::Vector;
+use crate::model::components::body::DAMPING;
 use crate::model::components::muscle_constants::MuscleConstants;
 use crate::model::layout::internal::InternalKind;
 use crate::model::layout::joint_sections::JointSection;
@@ -13,7 +14,6 @@ use crate::model::quantities::measures::{Made, Reading, Shape};
 use crate::model::quantities::what::{Pulling, Reaction};
 use crate::model::system::Fidelity;
 use crate::model::term_order::rank;
-use crate::model::terms::joint_forces::DAMPING;
 use std::sync::Arc;
 
 impl Reading<'_, '_> {

@@ -40,12 +40,12 @@ pub struct JointReading {
     /// Index among the joint coordinates; `None` where the joint has none.
     pub coordinate: Option<usize>,
     /// Vectors a, b of the parent and c of the child, whose angle is the coordinate; or n, span for a displacement.
-    pub measure: JointCoordinate,
+    measure: Option<JointCoordinate>,
 }
 
 /// Formula of the coordinate.
 #[derive(Clone, Debug)]
-pub enum JointCoordinate {
+pub(crate) enum JointCoordinate {
     /// atan2(b·c, a·c).
     Angle {
         /// a, b, c.
@@ -58,8 +58,6 @@ pub enum JointCoordinate {
         /// Span r from the parent to the child.
         span: MaterialVector,
     },
-    /// No coordinate.
-    None,
 }
 
 /// One degree of freedom of a joint, about or along a unit axis in the ground frame.
@@ -203,46 +201,52 @@ impl System {
     }
 }
 
-impl JointReading {
-    /// The reading of joint `index` of a system; `coordinates` are those of [`System::joint_coordinates`].
-    pub fn new(joint: &Joint, coordinate: Option<usize>, reference: &[Pose]) -> Self {
+impl JointCoordinate {
+    /// That of a joint with exactly one.
+    pub(crate) fn new(joint: &Joint, reference: &[Pose]) -> Option<Self> {
         let parent =
             |direction: &Vector| MaterialVector::direction(joint.parent, direction, reference);
         let child =
             |direction: &Vector| MaterialVector::direction(Some(joint.child), direction, reference);
-        let measure = match joint.kind {
+        match joint.kind {
             JointKind::Revolute { axis } => {
                 let [a, b] = triad(&axis);
-                JointCoordinate::Angle {
+                Some(Self::Angle {
                     vectors: [parent(&a), parent(&b), child(&a)],
-                }
+                })
             }
-            JointKind::Prismatic { axis } => JointCoordinate::Displacement {
+            JointKind::Prismatic { axis } => Some(Self::Displacement {
                 axis: parent(&axis),
                 span: MaterialVector::span(
                     &MaterialVector::point(joint.parent, &joint.at, reference),
                     &MaterialVector::point(Some(joint.child), &joint.at, reference),
                 ),
-            },
-            _ => JointCoordinate::None,
-        };
+            }),
+            _ => None,
+        }
+    }
+}
+
+impl JointReading {
+    /// The reading of a joint of a system; the coordinate is that of [`System::joint_coordinates`].
+    pub fn new(joint: &Joint, coordinate: Option<usize>, reference: &[Pose]) -> Self {
         Self {
             coordinate,
-            measure,
+            measure: JointCoordinate::new(joint, reference),
         }
     }
 
     /// The coordinate at poses; an angle in the branch nearest to `near`; zero where there is none.
     pub fn read(&self, poses: &[Pose], near: f64) -> f64 {
         match &self.measure {
-            JointCoordinate::Angle { vectors } => {
+            Some(JointCoordinate::Angle { vectors }) => {
                 let [a, b, c] = vectors.each_ref().map(|v| v.at(poses, &[]));
                 nearest_turn(b.dot(&c).atan2(a.dot(&c)), near)
             }
-            JointCoordinate::Displacement { axis, span } => {
+            Some(JointCoordinate::Displacement { axis, span }) => {
                 axis.at(poses, &[]).dot(&span.at(poses, &[]))
             }
-            JointCoordinate::None => 0.0,
+            None => 0.0,
         }
     }
 }

@@ -13,7 +13,10 @@ use crate::mesh::Mesh;
 use crate::model::components::{BlockLoad, Components, Load, LoadPlace};
 use nalgebra::{Matrix3, Vector3};
 
-pub use crate::energy::ElasticLaw;
+pub use crate::element::Dielectric as ElectricConstants;
+pub use crate::energy::{
+    CoordinateSpring as JointSpring, CoordinateStops as JointStops, ElasticLaw,
+};
 pub use crate::model::system::bodies::{
     Attachment, Body, Shape, directors_along, is_diagonal, principal,
 };
@@ -394,26 +397,6 @@ pub fn number_sources(solids: &mut [Solid], first: usize) {
     }
 }
 
-/// A linear spring of a joint coordinate.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JointSpring {
-    /// Stiffness: N mm/rad for an angle, N/mm for a displacement.
-    pub stiffness: f64,
-    /// Coordinate without force in rad or mm; zero is the reference configuration.
-    pub rest: f64,
-}
-
-/// Elastic stops of a joint coordinate.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct JointStops {
-    /// Lowest and highest coordinate without force, in rad or mm; infinite where there is no stop.
-    pub at: [f64; 2],
-    /// Stiffness beyond: N mm/rad for an angle, N/mm for a displacement.
-    pub stiffness: f64,
-    /// Width around a stop over which the stiffness grows, in rad or mm; zero where it jumps.
-    pub smoothing: f64,
-}
-
 impl JointStops {
     /// Distance in rad or mm by which a coordinate is beyond a stop; negative between the stops.
     pub fn beyond(&self, coordinate: f64) -> f64 {
@@ -477,17 +460,6 @@ pub struct Material {
     pub maxwell: MaxwellBranches,
     /// Smallest and largest stretch for which the constants hold, for warnings.
     pub stretch_range: Option<[f64; 2]>,
-}
-
-/// Constants of the electric energy c₁ E·E + c₂ C:(E⊗E) − ½ ε J C⁻¹:(E⊗E), in N/V².
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ElectricConstants {
-    /// c₁.
-    pub c1: f64,
-    /// c₂.
-    pub c2: f64,
-    /// Permittivity ε of the last term: vacuum's, or the whole of an ideal dielectric.
-    pub permittivity: f64,
 }
 
 /// Permittivity of vacuum in N/V² (F/m), CODATA value in the decimals of the reference solutions.

@@ -1,7 +1,5 @@
-//! Lumped muscles whose electrodes have a charge instead of the voltage of a source, and the voltages that follow.
+//! Lumped muscles whose electrodes have a charge instead of the voltage of a source.
 
-use crate::coordinates::Configuration;
-use crate::energy::Capacitance;
 use crate::model::components::{LoadPlace, capacitance};
 use crate::model::layout::internal::InternalKind;
 use crate::model::layout::variables::{Role, Variable};
@@ -46,9 +44,9 @@ impl System {
 
     /// The source of the charge of a muscle, where a load gives it.
     pub fn charge_of(&self, muscle: usize) -> Option<usize> {
-        let mut loads = self.loads();
-        let own = loads.find(|(_, load)| load.on == LoadPlace::Muscle(muscle));
-        own.map(|(source, _)| source)
+        let mut loads = self.components.loads.iter();
+        let own = loads.position(|load| load.on == LoadPlace::Muscle(muscle))?;
+        Some(self.first_load() + own)
     }
 
     /// Returns true if the electrodes of a muscle have the voltage of a source.
@@ -105,65 +103,7 @@ impl Muscle {
     }
 }
 
-/// A lumped muscle whose electrodes have a charge instead of the voltage of a source.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Charged {
-    pub(crate) muscle: usize,
-    capacitance: Capacitance,
-    pub(crate) place: ChargePlace,
-}
-
-/// Place of a charge.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum ChargePlace {
-    /// A coordinate, in the unit of the muscle.
-    Coordinate(usize),
-    /// A scalar of the intervals: an input.
-    Input(usize),
-}
-
-impl Charged {
-    /// Voltage Q/C in V at an instant and under the scalars of an interval beside it.
-    pub(crate) fn voltage(&self, model: &Model, instant: &Configuration, scalars: &[f64]) -> f64 {
-        let charge = match self.place {
-            ChargePlace::Coordinate(coordinate) => {
-                instant.z[coordinate] * self.capacitance.unit_of_charge()
-            }
-            ChargePlace::Input(scalar) => scalars[scalar],
-        };
-        let length = instant.x[model.spans[self.muscle]].norm();
-        charge / self.capacitance.at_length(length)
-    }
-}
-
 impl Model {
-    /// Muscles behind resistors, then those whose charge is given.
-    pub(crate) fn charged(&self) -> impl Iterator<Item = Charged> + '_ {
-        let behind = self
-            .internal_kinds()
-            .filter_map(|(coordinate, kind)| match kind {
-                InternalKind::Charge(muscle) => Some((muscle, ChargePlace::Coordinate(coordinate))),
-                _ => None,
-            });
-        let given = self
-            .system
-            .loads()
-            .filter_map(|(source, load)| match load.on {
-                LoadPlace::Muscle(muscle) => {
-                    Some((muscle, ChargePlace::Input(self.variables.input(source)?)))
-                }
-                _ => None,
-            });
-        behind.chain(given).filter_map(|(muscle, place)| {
-            let capacitance = capacitance(self.system.muscles.get(muscle)?)?;
-            Some(Charged {
-                muscle,
-                capacitance,
-                place,
-            })
-        })
-    }
-
     /// The source of whose muscle or electrodes coordinate `i` is the charge.
     pub fn charge(&self, i: usize) -> Option<usize> {
         match self.internal_kind(i)? {
@@ -202,19 +142,5 @@ impl Model {
             row / h / division.unwrap_or(1.0)
         };
         rows.iter().zip(voltages).map(charge).collect()
-    }
-
-    /// Names of the columns of [`electrode_voltages`](Self::electrode_voltages).
-    pub fn electrodes(&self) -> impl Iterator<Item = String> + '_ {
-        let name =
-            |charged: Charged| format!("{}_voltage", self.system.muscles[charged.muscle].name);
-        self.charged().map(name)
-    }
-
-    /// Voltage Q/C in V of each muscle with a charge Q instead of the voltage of a source, at an instant and under the scalars of an
-    /// interval beside it.
-    pub fn electrode_voltages(&self, instant: &Configuration, scalars: &[f64]) -> Vec<f64> {
-        let voltage = |charged: Charged| charged.voltage(self, instant, scalars);
-        self.charged().map(voltage).collect()
     }
 }

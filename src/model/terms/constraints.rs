@@ -7,7 +7,7 @@ use crate::model::analysis::Coordinates;
 use crate::model::construction::Construction;
 use crate::model::layout::internal::InternalKind;
 use crate::model::system::Glue;
-use crate::model::system::joints::{JointCoordinate, JointReading};
+use crate::model::system::joints::JointCoordinate;
 use crate::model::terms::joint_constraints::{JointConstraints, Product};
 use crate::model::terms::{LeftOut, Present, note};
 use std::mem::take;
@@ -131,7 +131,8 @@ impl Construction<'_> {
             out.names.push(internal.name.clone());
             out.of.push(joint.name.clone());
             let mut index = |v: MaterialVector| Stencil::Here.of(vectors.index(v));
-            match JointReading::new(joint, None, self.reference).measure {
+            let coordinate = JointCoordinate::new(joint, self.reference);
+            match coordinate.expect("its joint has a coordinate") {
                 JointCoordinate::Angle { vectors } => {
                     let [a, b, c] = vectors.map(&mut index);
                     out.angles.push(Element {
@@ -145,7 +146,6 @@ impl Construction<'_> {
                     vectors: [index(axis), index(span), value],
                     scalars,
                 }),
-                JointCoordinate::None => unreachable!("its joint has a coordinate"),
             }
         }
     }

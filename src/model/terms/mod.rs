@@ -6,7 +6,6 @@ pub(super) mod charged;
 pub(super) mod constraints;
 pub(super) mod field_extent;
 pub(super) mod joint_constraints;
-pub(super) mod joint_forces;
 pub(super) mod loads;
 pub(super) mod parametric_elements;
 
