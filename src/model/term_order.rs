@@ -1,6 +1,5 @@
 //! The terms of the library in the order of the sum of the action: inertia, potentials, virtual works, constraints. Terms of other crates follow.
 
-use crate::model::components::{DISSIPATIONS, POTENTIALS};
 use crate::model::terms::{GRAVITY, LeftOut, Present};
 
 /// A term: its name, and the reason why it is absent where the scene gives no other one.
@@ -18,9 +17,10 @@ const NO_CHARGE: &str = "no charge of a lumped muscle is given, or flows through
 const NO_LOAD: &str = "no load of its kind";
 const NO_BODY: &str = "no body that moves";
 const NO_END: &str = "no joint that calls for one";
+const NO_SPRING: &str = "no spring";
 
-/// Inertia and potentials before those of components.
-const FIRST: [Row; 18] = [
+/// The terms of the library.
+const TERMS: [Row; 37] = [
     ("body inertia", NO_BODY),
     ("muscle inertia", NO_MUSCLE),
     ("block inertia", NO_BLOCK),
@@ -39,10 +39,8 @@ const FIRST: [Row; 18] = [
     ("block maxwell elasticity", NO_BLOCK_BRANCH),
     ("joint elasticity", "no joint that moves names a stiffness"),
     ("joint stops", "no joint that moves names stops"),
-];
-
-/// Terms between the potentials of components and their dissipation.
-const MIDDLE: [Row; 11] = [
+    ("spring elasticity", NO_SPRING),
+    ("tendon elasticity", "no tendon"),
     ("loads", NO_LOAD),
     ("surface charges", NO_LOAD),
     ("electrode charges", NO_WIRED_ELECTRODE),
@@ -54,10 +52,7 @@ const MIDDLE: [Row; 11] = [
     ("block maxwell viscosity", NO_BLOCK_BRANCH),
     ("circuit resistance", NO_CIRCUIT),
     ("joint damping", "no joint that moves names a damping"),
-];
-
-/// Constraints.
-const LAST: [Row; 5] = [
+    ("spring damping", NO_SPRING),
     ("rigid bodies", NO_BODY),
     ("joint directions", NO_END),
     ("joint points", NO_END),
@@ -67,10 +62,7 @@ const LAST: [Row; 5] = [
 
 /// Names of the terms of the library, in the order of the sum.
 pub fn terms() -> impl Iterator<Item = &'static str> {
-    let [first, middle, last] =
-        [&FIRST[..], &MIDDLE, &LAST].map(|rows| rows.iter().map(|row| row.0));
-    let (potentials, works) = (first.chain(POTENTIALS), middle.chain(DISSIPATIONS));
-    potentials.chain(works).chain(last)
+    TERMS.into_iter().map(|(name, _)| name)
 }
 
 /// Place of a term in the sum.
@@ -81,8 +73,7 @@ pub(super) fn rank(term: &str) -> usize {
 
 /// Keeps the first reason for each term that is not there, in the order of the sum.
 pub(super) fn settle(present: &[Present], left_out: &mut Vec<LeftOut>) {
-    let rows = FIRST.iter().chain(&MIDDLE).chain(&LAST);
-    left_out.extend(rows.map(|&(term, why)| LeftOut { term, why }));
+    left_out.extend(TERMS.map(|(term, why)| LeftOut { term, why }));
     let is_there = |term| present.iter().any(|p| p.term == term);
     left_out.retain(|l| !is_there(l.term));
     left_out.sort_by_key(|l| rank(l.term));

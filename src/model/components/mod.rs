@@ -30,22 +30,15 @@ pub struct Components {
     pub others: Vec<Other>,
 }
 
-/// Names of the terms with a potential, in the order of the sum.
-pub(super) const POTENTIALS: [&str; 2] = [spring::ELASTICITY, tendon::ELASTICITY];
-/// Names of the terms that dissipate.
-pub(super) const DISSIPATIONS: [&str; 1] = [spring::DAMPING];
-
 impl Components {
     /// Their terms.
     pub(super) fn build(&self, terms: &mut Terms<'_>) {
         for (index, spring) in self.springs.iter().enumerate() {
             spring.add(Some(index), terms);
         }
-        terms.without_each([spring::ELASTICITY, spring::DAMPING], "no spring");
         for (index, tendon) in self.tendons.iter().enumerate() {
             tendon.add(Some(index), terms);
         }
-        terms.without(tendon::ELASTICITY, "no tendon");
         self.others.iter().for_each(|other| other.0.build(terms));
     }
 

@@ -26,8 +26,8 @@ pub struct Spring {
     pub rest_length: f64,
 }
 
-pub(super) const ELASTICITY: &str = "spring elasticity";
-pub(super) const DAMPING: &str = "spring damping";
+const ELASTICITY: &str = "spring elasticity";
+const DAMPING: &str = "spring damping";
 
 impl Spring {
     fn length(&self) -> f64 {

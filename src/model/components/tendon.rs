@@ -26,7 +26,7 @@ pub struct Tendon {
     pub smoothing: f64,
 }
 
-pub(super) const ELASTICITY: &str = "tendon elasticity";
+const ELASTICITY: &str = "tendon elasticity";
 
 /// Sum of the distances of neighbours.
 fn path_length(places: impl Iterator<Item = Vector3<f64>> + Clone) -> f64 {
