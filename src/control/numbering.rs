@@ -103,17 +103,6 @@ pub struct InputColumn {
     pub input: usize,
 }
 
-/// An instant with the coordinates of another one: it has no columns of its own for them, and none of their constraints.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::control) struct Twin {
-    /// The instant, the last one.
-    pub(in crate::control) instant: usize,
-    /// The instant whose coordinates it has.
-    pub(in crate::control) of: usize,
-    /// True if their balances are one, as where a periodic motion comes back to its start.
-    pub(in crate::control) is_closed: bool,
-}
-
 /// Columns and rows of a horizon.
 #[derive(Clone, Debug)]
 pub struct Numbering {
@@ -128,24 +117,24 @@ pub struct Numbering {
     column_of_horizon: Option<usize>,
     row_of_instant: Vec<Option<usize>>,
     row_of_interval: Vec<Option<usize>>,
-    /// The interval that comes before the first one of a periodic motion.
-    before_first: Option<usize>,
+    pub(in crate::control) span: Span,
     /// Numbers of variables of an instant and of an interval.
     counts: [usize; 2],
 }
 
 impl Numbering {
-    /// Numbers the variables of `intervals` intervals, the last instant of which may be the `twin` of another one. `is_given` says which
-    /// values are given, `is_balanced(k, i)` whether the momentum balance of coordinate i of instant k is an equation.
+    /// Numbers the variables of a horizon. `is_given` says which values are given, `is_balanced(k, i)` whether the momentum balance of coordinate i
+    /// of instant k is an equation. The last instant has no columns of its own for coordinates that are those of another one, and none of their
+    /// constraints.
     pub(in crate::control) fn new(
         variables: &Variables,
-        intervals: usize,
-        twin: Option<Twin>,
+        span: Span,
         is_given: impl Fn(Column) -> bool,
         is_balanced: impl Fn(usize, usize) -> bool,
     ) -> Self {
         let counts = [Time::Instant, Time::Interval].map(|time| variables.of(time).len());
         let [of_instant, of_interval] = counts;
+        let intervals = span.intervals;
         let mut out = Self {
             columns: Vec::new(),
             rows: Vec::new(),
@@ -155,9 +144,7 @@ impl Numbering {
             column_of_horizon: None,
             row_of_instant: vec![None; (intervals + 1) * of_instant],
             row_of_interval: vec![None; intervals * of_interval],
-            before_first: twin
-                .filter(|twin| twin.is_closed)
-                .and_then(|_| intervals.checked_sub(1)),
+            span,
             counts,
         };
         let inputs = variables.sources_range();
@@ -167,9 +154,9 @@ impl Numbering {
             for (i, variable) in variables.of(Time::Instant).iter().enumerate() {
                 let at = k * of_instant + i;
                 let column = Column::Instant { k, i };
-                let twin = twin.filter(|twin| twin.instant == k);
+                let twin = span.twin().filter(|_| k == intervals);
                 out.column_of_instant[at] = match (twin, variable.role) {
-                    (Some(twin), Role::Coordinate) => out.unknown(twin.of, i),
+                    (Some(twin), Role::Coordinate) => out.unknown(twin, i),
                     _ => out.column(column, is_given(column)),
                 };
                 let is_row = match variable.role {
@@ -177,7 +164,7 @@ impl Numbering {
                     role => role.has_equation() && !all_given && twin.is_none(),
                 };
                 out.row_of_instant[at] = match (twin, variable.role) {
-                    (Some(twin), Role::Coordinate) if twin.is_closed => out.row(twin.of, i),
+                    (Some(twin), Role::Coordinate) if span.is_closed => out.row(twin, i),
                     _ => out.row_where(is_row, Row::Instant { k, i }),
                 };
             }
@@ -236,11 +223,6 @@ impl Numbering {
         *self.column_of_interval.get(k * self.counts[1] + s)?
     }
 
-    /// The interval before interval k: of the first one the last, where the motion is periodic.
-    pub(in crate::control) fn before(&self, k: usize) -> Option<usize> {
-        k.checked_sub(1).or(self.before_first)
-    }
-
     /// Column of the interval length.
     pub fn horizon(&self) -> Option<usize> {
         self.column_of_horizon
@@ -288,7 +270,16 @@ pub struct Span {
 }
 
 impl Span {
-    /// The interval before interval k, where there is one.
+    /// The instant whose coordinates the last one has: the start of a periodic motion, where their balances are one too, or its end, where an
+    /// interval behind it holds the goal.
+    pub(super) fn twin(self) -> Option<usize> {
+        match self.is_closed {
+            true => Some(0),
+            false => (self.end < self.intervals).then_some(self.end),
+        }
+    }
+
+    /// The interval before interval k: of the first one the last, where the motion is periodic.
     pub(super) fn before(self, k: usize) -> Option<usize> {
         let last = self.is_closed.then(|| self.intervals - 1);
         k.checked_sub(1).or(last)

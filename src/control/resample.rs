@@ -144,16 +144,16 @@ pub(super) fn costates(
     }
     let ratio = grids.ratio();
     let constraint = ratio * solved.multiplier_time / model.multiplier_time;
-    let interval = |k: usize| match k < to.end {
+    let interval = |k: usize| match k < to.span.end {
         true => grids.interval(k),
-        false => from.end,
+        false => from.span.end,
     };
     let row = |row: &Row| match *row {
         // What holds the goal: the impulse of the static forces shrinks with the interval, in the balances at both of its ends.
-        Row::Instant { k, i } if k > to.end => {
+        Row::Instant { k, i } if k > to.span.end => {
             let of = |k: usize| from.unknowns.row(k, i).map_or(0.0, |r| old.rows[r]);
-            let last = of(from.end);
-            (last + of(from.end + 1)) / ratio - last
+            let last = of(from.span.end);
+            (last + of(from.span.end + 1)) / ratio - last
         }
         Row::Instant { k, i } => {
             let weights = grids.weights(k);
@@ -171,7 +171,7 @@ pub(super) fn costates(
             let place = from.unknowns.row_of_scalar(interval(k), s);
             place.map_or(0.0, |r| old.rows[r])
         }
-        Row::Time { of, .. } => from.carried_of_time(of, grids, to.end, &old.rows),
+        Row::Time { of, .. } => from.carried_of_time(of, grids, to.span.end, &old.rows),
         Row::Limit { limit, k } => from.carried(limit, k, grids, &old.rows),
     };
     let bound = |list: &[f64], column: &Column| match *column {
@@ -181,7 +181,7 @@ pub(super) fn costates(
         }
         Column::Interval { k, s } => {
             let place = from.unknowns.scalar(interval(k), s);
-            let factor = if k < to.end { ratio } else { 1.0 };
+            let factor = if k < to.span.end { ratio } else { 1.0 };
             factor * place.map_or(0.0, |v| list[v])
         }
         Column::Parameter { s } => from.unknowns.scalar(0, s).map_or(0.0, |v| list[v]),
@@ -210,12 +210,12 @@ impl Layout {
     /// end is a momentum, no sum over a step.
     fn carried_of_time(&self, of: Column, grids: Grids, end: usize, old: &[f64]) -> f64 {
         let (column, is_end) = match of {
-            Column::Instant { k, i } if k == end => (self.unknowns.unknown(self.end, i), true),
+            Column::Instant { k, i } if k == end => (self.unknowns.unknown(self.span.end, i), true),
             Column::Instant { k, i } => {
-                let within = grids.nearest(k).min(self.end.max(1) - 1);
+                let within = grids.nearest(k).min(self.span.end.max(1) - 1);
                 (self.unknowns.unknown(within, i), false)
             }
-            Column::Interval { k, s } if k >= end => (self.unknowns.scalar(self.end, s), true),
+            Column::Interval { k, s } if k >= end => (self.unknowns.scalar(self.span.end, s), true),
             Column::Interval { k, s } => (self.unknowns.scalar(grids.interval(k), s), false),
             Column::Parameter { .. } | Column::Horizon => (None, false),
         };
@@ -229,7 +229,7 @@ impl Layout {
         let first = self.unknowns.rows.len() - self.limit_rows.len() + of.first;
         let is_single = of.bounded.when.is_single();
         let site = match of.site {
-            Site::Intervals if k >= grids.to && !is_single => self.end,
+            Site::Intervals if k >= grids.to && !is_single => self.span.end,
             Site::Intervals => grids.interval(k),
             Site::Instants => grids.nearest(k),
         };

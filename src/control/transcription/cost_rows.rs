@@ -416,15 +416,15 @@ impl Objective {
         let ends = boundary.rest.each_ref();
         let ends = ends.map(|row| row.as_ref().map(|row| counted(model, &inputs, row)));
         Self {
-            cost: Cost::new(objective, inputs.len(), layout.span(), ends),
+            cost: Cost::new(objective, inputs.len(), layout.span, ends),
             quantities: cost_rows(
                 model,
                 paid,
                 energies,
                 boundary.limits.quantities().len(),
-                layout.end,
+                layout.span.end,
             ),
-            energies: energy_rows(model, energies, &boundary.rest, layout.intervals),
+            energies: energy_rows(model, energies, &boundary.rest, layout.span.intervals),
             inputs,
             scale: 1.0,
         }

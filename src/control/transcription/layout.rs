@@ -11,7 +11,7 @@
 
 use crate::control::boundary_conditions::{BoundaryConditions, Rests};
 use crate::control::limits::BoundedQuantity;
-use crate::control::numbering::{Column, Numbering, Row, Span, Twin};
+use crate::control::numbering::{Column, Numbering, Row, Span};
 use crate::control::problem::{BoundaryState, Control, Duration};
 use crate::control::transcription::limit_rows::{LimitRow, limit_rows};
 use crate::coordinates::{Configuration, CoordinateMap};
@@ -25,12 +25,7 @@ const TWO_STRETCHES: usize = 16;
 /// Variables and rows of the program of a control problem on a number of intervals.
 #[derive(Clone, Debug)]
 pub(in crate::control) struct Layout {
-    /// All intervals: those of the motion and, where the inputs that hold its goal are sought, one at rest behind them.
-    pub(super) intervals: usize,
-    /// Intervals of the motion: the instant at which it ends.
-    pub(in crate::control) end: usize,
-    /// The instant with the coordinates of another one.
-    pub(super) twin: Option<Twin>,
+    pub(in crate::control) span: Span,
     pub(super) horizon: Horizon,
     pub(in crate::control) unknowns: Numbering,
     /// Functions of time behind the equations of motion.
@@ -48,13 +43,11 @@ impl Layout {
         control: &Control,
         end: usize,
     ) -> Self {
-        let intervals = end + usize::from(control.seeks_hold());
-        let is_closed = control.goal == BoundaryState::Periodic;
-        let twin = (control.seeks_hold() || is_closed).then_some(Twin {
-            instant: intervals,
-            of: if is_closed { 0 } else { end },
-            is_closed,
-        });
+        let span = Span {
+            end,
+            intervals: end + usize::from(control.seeks_hold()),
+            is_closed: control.goal == BoundaryState::Periodic,
+        };
         let map = &model.action.map;
         // A node that multipliers hold rests with what they hold it to: its balance gives their last value.
         let mut is_held = vec![false; map.coordinates];
@@ -71,12 +64,7 @@ impl Layout {
         let rests = |i: usize| is_in_rest(i) && !model.is_memory(i);
         let is_balanced = |k: usize, i: usize| (k != end || rests(i)) && !model.is_prescribed(i);
         let is_given = |column| is_given(column, model, boundary, control, end);
-        let mut unknowns = Numbering::new(&model.variables, intervals, twin, is_given, is_balanced);
-        let span = Span {
-            end,
-            intervals,
-            is_closed,
-        };
+        let mut unknowns = Numbering::new(&model.variables, span, is_given, is_balanced);
         let times = TimeRows::new(model, control, end, &mut unknowns);
         let limits = limit_rows(
             model,
@@ -93,9 +81,7 @@ impl Layout {
             }
         }
         Self {
-            intervals,
-            end,
-            twin,
+            span,
             horizon: match control.duration {
                 Duration::Given(_) => Horizon::Given,
                 Duration::Free { .. } => Horizon::Free,
@@ -124,26 +110,12 @@ impl Layout {
         Some(self.first_time_row() + self.times.place(column?)?)
     }
 
-    /// The intervals of the horizon.
-    pub(super) fn span(&self) -> Span {
-        Span {
-            end: self.end,
-            intervals: self.intervals,
-            is_closed: self.is_closed(),
-        }
-    }
-
-    /// Returns true if the motion is periodic.
-    pub(super) fn is_closed(&self) -> bool {
-        self.twin.is_some_and(|twin| twin.is_closed)
-    }
-
     /// Gives an instant that has the coordinates of another one these, and its charts.
     pub(super) fn share(&self, instants: &mut [Configuration], map: &CoordinateMap) {
-        let Some(Twin { instant, of, .. }) = self.twin else {
+        let Some(of) = self.span.twin() else {
             return;
         };
-        let (before, twin) = instants.split_at_mut(instant);
+        let (before, twin) = instants.split_at_mut(self.span.intervals);
         let (from, to) = (&before[of].z, &mut twin[0].z);
         to[..map.coordinates].copy_from_slice(&from[..map.coordinates]);
         to[map.unknowns()..].copy_from_slice(&from[map.unknowns()..]);
@@ -151,8 +123,8 @@ impl Layout {
 
     /// Instant at which a long horizon is cut in two.
     pub(super) fn middle(&self) -> Option<usize> {
-        let is_cut = self.horizon == Horizon::Given && self.intervals >= TWO_STRETCHES;
-        is_cut.then_some(self.intervals / 2)
+        let is_cut = self.horizon == Horizon::Given && self.span.intervals >= TWO_STRETCHES;
+        is_cut.then_some(self.span.intervals / 2)
     }
 }
 

@@ -225,9 +225,9 @@ impl Numbering {
         let (side, i) = entry;
         match side {
             SCALAR => self.scalar(k, i),
-            BEFORE => self.scalar(self.before(k)?, i),
+            BEFORE => self.scalar(self.span.before(k)?, i),
             DURATION => self.horizon(),
-            BEFORE_INSTANT => self.unknown(self.before(k)?, i),
+            BEFORE_INSTANT => self.unknown(self.span.before(k)?, i),
             _ => self.unknown(k + side, i),
         }
     }

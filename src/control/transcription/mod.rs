@@ -136,8 +136,7 @@ impl<'m> Transcription<'m> {
 
     /// Number of intervals N of the motion.
     pub fn intervals(&self) -> usize {
-        let Layout { end, .. } = &self.layout;
-        *end
+        self.layout.span.end
     }
 
     /// The model whose motion is looked for.
@@ -211,7 +210,7 @@ impl StartMomentum {
         layout: &Layout,
         structure: &Structure,
     ) -> Self {
-        if layout.is_closed() {
+        if layout.span.is_closed {
             return Self {
                 given: vec![0.0; boundary.start.momentum.len()],
                 lines: Vec::new(),

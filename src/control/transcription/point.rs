@@ -2,7 +2,7 @@
 
 use crate::control::guess::InitialGuess;
 use crate::control::identification::Costates;
-use crate::control::numbering::{Column, Row, Twin};
+use crate::control::numbering::{Column, Row, Span};
 use crate::control::transcription::Transcription;
 use crate::control::transcription::segment::Placed;
 use crate::dynamics::DiscreteTrajectory;
@@ -16,7 +16,7 @@ pub struct Decoder {
     scalars: Vec<Vec<f64>>,
     /// Scalars behind the motion.
     held: Option<Vec<f64>>,
-    twin: Option<Twin>,
+    span: Span,
     h: f64,
     columns: Vec<Column>,
     scales: Vec<f64>,
@@ -44,8 +44,9 @@ impl Decoder {
                 Column::Instant { .. } => {}
             }
         }
-        if let Some(Twin { instant, of, .. }) = self.twin.filter(|twin| twin.instant < instants) {
-            z[instant] = z[of].clone();
+        let last = self.span.intervals;
+        if let Some(of) = self.span.twin().filter(|_| last < instants) {
+            z[last] = z[of].clone();
         }
         DiscreteTrajectory {
             held,
@@ -91,7 +92,7 @@ impl Transcription<'_> {
     /// Returns a decoder of points to motions that works without the program, which a solver holds while it works.
     pub fn decoder(&self) -> Decoder {
         let scalar_count = self.model.action.layout().interval_scalars;
-        let end = self.layout.end;
+        let end = self.layout.span.end;
         let scalars =
             |k: usize| self.workspace.scalars[k * scalar_count..(k + 1) * scalar_count].to_vec();
         Decoder {
@@ -100,8 +101,8 @@ impl Transcription<'_> {
                 .map(|instant| instant.z.clone())
                 .collect(),
             scalars: (0..end).map(scalars).collect(),
-            held: (end < self.layout.intervals).then(|| scalars(end)),
-            twin: self.layout.twin,
+            held: (end < self.layout.span.intervals).then(|| scalars(end)),
+            span: self.layout.span,
             h: self.workspace.h,
             columns: self.layout.unknowns.columns.clone(),
             scales: self.variable_scales.clone(),
@@ -179,12 +180,8 @@ impl Transcription<'_> {
             match *row {
                 Row::Instant { k, i } => {
                     workspace.instants[k].l[i] = y;
-                    let twin = self
-                        .layout
-                        .twin
-                        .filter(|twin| twin.is_closed && k == twin.of);
-                    if let Some(twin) = twin.filter(|_| i < coordinates) {
-                        workspace.instants[twin.instant].l[i] = y;
+                    if self.layout.span.is_closed && k == 0 && i < coordinates {
+                        workspace.instants[self.layout.span.intervals].l[i] = y;
                     }
                 }
                 Row::Interval { k, s } => workspace.scalars_along[k * count + s] = y,

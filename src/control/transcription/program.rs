@@ -72,7 +72,7 @@ impl Nlp for Transcription<'_> {
         self.sweep(Order::Gradient);
         let stride = self.stride();
         let count = self.model.action.map.unknowns();
-        let coordinates = self.model.coordinate_count();
+        let (coordinates, span) = (self.model.coordinate_count(), self.layout.span);
         for (value, (row, scale)) in g
             .iter_mut()
             .zip(self.layout.unknowns.rows.iter().zip(&self.row_scales))
@@ -84,11 +84,9 @@ impl Nlp for Transcription<'_> {
                             0 => self.momentum.at(i, x, &self.variable_scales),
                             _ => 0.0,
                         };
-                        let again = match self.layout.twin {
-                            Some(twin) if twin.is_closed && k == twin.of && i < coordinates => {
-                                self.workspace.rows[twin.instant * stride + i]
-                            }
-                            _ => 0.0,
+                        let again = match span.is_closed && k == 0 && i < coordinates {
+                            true => self.workspace.rows[span.intervals * stride + i],
+                            false => 0.0,
                         };
                         self.workspace.rows[k * stride + i] + start + again
                     }
@@ -144,7 +142,9 @@ impl Nlp for Transcription<'_> {
                 Stage::Multiplier(2 * k as u32 + 2)
             }
             // A motion that comes back couples its ends.
-            Column::Instant { k: 0, .. } if self.layout.is_closed() && self.layout.end > 1 => {
+            Column::Instant { k: 0, .. }
+                if self.layout.span.is_closed && self.layout.span.end > 1 =>
+            {
                 Stage::Border
             }
             Column::Instant { k, .. } => Stage::Of(2 * k as u32),
@@ -192,10 +192,10 @@ impl Nlp for Transcription<'_> {
             (Row::Instant { k, .. }, Some(Role::Multiplier)) => {
                 format!("constraint {name} at instant {k}")
             }
-            (Row::Instant { k, .. }, _) if k == self.layout.end => {
+            (Row::Instant { k, .. }, _) if k == self.layout.span.end => {
                 format!("rest at the goal, {name}")
             }
-            (Row::Instant { k, .. }, _) if k > self.layout.end => {
+            (Row::Instant { k, .. }, _) if k > self.layout.span.end => {
                 format!("equilibrium at the goal, {name}")
             }
             (Row::Instant { k, .. }, _) => format!("motion at instant {k}, {name}"),

@@ -187,7 +187,7 @@ impl Transcription<'_> {
                 }
                 (Column::Horizon, _) => match control.duration {
                     Duration::Free { min, max, .. } => {
-                        [min, max].map(|t| t / self.layout.end as f64)
+                        [min, max].map(|t| t / self.layout.span.end as f64)
                     }
                     Duration::Given(_) => [self.workspace.h; 2],
                 },

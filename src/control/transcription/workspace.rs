@@ -49,7 +49,7 @@ impl Workspace {
         initial: &InitialGuess,
         layout: &Layout,
     ) -> Self {
-        let (action, intervals) = (&model.action, layout.intervals);
+        let (action, intervals) = (&model.action, layout.span.intervals);
         let map = &action.map;
         let scalars = given_scalars(model, control, layout);
         let scalar_count = model.variables.of(Time::Interval).len();
@@ -88,17 +88,19 @@ fn given_instants(
 ) -> Vec<Configuration> {
     let map = &model.action.map;
     let unknowns = map.unknowns();
-    let mut instants = vec![map.instant(); layout.intervals + 1];
+    let mut instants = vec![map.instant(); layout.span.intervals + 1];
     for (instant, z) in instants.iter_mut().zip(&initial.discrete.z) {
         instant.z[unknowns..].copy_from_slice(&z[unknowns..]);
     }
     for (k, instant) in instants.iter_mut().enumerate() {
         model.prescribe(k as f64 * initial.h, &mut instant.z);
     }
-    if !layout.is_closed() {
+    if !layout.span.is_closed {
         instants[0].z.copy_from_slice(&boundary.start.z);
     }
-    boundary.goal.give(&mut instants[layout.end].z, unknowns);
+    boundary
+        .goal
+        .give(&mut instants[layout.span.end].z, unknowns);
     layout.share(&mut instants, map);
     instants
 }
@@ -106,14 +108,14 @@ fn given_instants(
 /// Scalars of all intervals; zero where they are unknowns.
 fn given_scalars(model: &Model, control: &Control, layout: &Layout) -> Vec<f64> {
     let given = |k: usize| {
-        let time = match k == layout.end {
+        let time = match k == layout.span.end {
             true => control.duration.first(),
             false => control.middle(k),
         };
         let scalars = model.variables.of(Time::Interval).iter();
         scalars.map(move |variable| control.given(variable, time).unwrap_or(0.0))
     };
-    (0..layout.intervals).flat_map(given).collect()
+    (0..layout.span.intervals).flat_map(given).collect()
 }
 
 /// Inputs of all intervals in kV, N and N m, from `count` scalars of each.
