@@ -38,30 +38,9 @@ pub enum BoundaryError {
     /// Ctrl-C was pressed, or the time allowed is over, before the problem was built.
     #[error("stopped while the problem was built ({0})")]
     Stopped(#[from] Stopped),
-    /// More equations than unknowns.
-    #[error(
-        "the problem is overdetermined: {equations} equations for {unknowns} unknowns. {}; {voltages} voltages are sought in \
-         {intervals} intervals. {}",
-        asked(*rest, *given, goals), cures(*has_elements, *rest)
-    )]
-    Overdetermined {
-        /// Equality constraints.
-        equations: usize,
-        /// Free variables.
-        unknowns: usize,
-        /// Equations of rest at the end.
-        rest: usize,
-        /// Coordinates that the goal gives.
-        given: usize,
-        /// Other equations of the goal by name.
-        goals: Vec<(String, usize)>,
-        /// Voltages that are sought.
-        voltages: usize,
-        /// Number of intervals.
-        intervals: usize,
-        /// True if nodes of elements are among the coordinates.
-        has_elements: bool,
-    },
+    /// More equations than unknowns: their numbers, and what makes them fewer.
+    #[error("the problem is overdetermined: {0}")]
+    Overdetermined(String),
 }
 
 impl BoundaryError {
@@ -77,36 +56,5 @@ impl BoundaryError {
             name: parameter.name.clone(),
             reason: reason.into(),
         }
-    }
-}
-
-/// Largest number of goals listed.
-const TOLD: usize = 6;
-
-/// Lists the parts of the goal with their numbers of equations.
-fn asked(rest: usize, given: usize, goals: &[(String, usize)]) -> String {
-    let mut parts = Vec::new();
-    if rest > 0 {
-        parts.push(format!("rest at the end is {rest} equations"));
-    }
-    if given > 0 {
-        parts.push(format!("the goal gives {given} coordinates"));
-    }
-    let told = goals.iter().take(TOLD);
-    parts.extend(told.map(|(name, count)| format!("{name} is {count}")));
-    if goals.len() > TOLD {
-        parts.push(format!("and {} more conditions", goals.len() - TOLD));
-    }
-    parts.join(", ")
-}
-
-/// Returns the changes that make them fewer.
-fn cures(has_elements: bool, rest: usize) -> &'static str {
-    match has_elements && rest > 0 {
-        true => {
-            "A few voltages cannot bring every node to rest: write \"rest\": \"bodies\" in the goal, so that bodies and the markers of the goal rest, \
-             with \"hold\" for the voltages that are held afterwards; or take fewer final conditions or more intervals"
-        }
-        false => "Take fewer final conditions, more intervals or more muscles",
     }
 }

@@ -99,7 +99,7 @@ impl WorkflowError {
             BoundaryError::Parameter { name, reason } => {
                 ("free", format!("parameter \"{name}\": {reason}"))
             }
-            BoundaryError::Overdetermined { .. } => ("goal", error.to_string()),
+            BoundaryError::Overdetermined(_) => ("goal", error.to_string()),
         };
         Self::problem(format!("{task}.{key}"), reason)
     }

@@ -231,14 +231,43 @@ pub(in crate::control) fn overdetermined(
         _ => false,
     };
     let is_given = |i: &usize| layout.unknowns.unknown(intervals, *i).is_none();
-    Some(BoundaryError::Overdetermined {
-        equations,
-        unknowns,
-        rest: rows.iter().filter(is_rest).count(),
-        given: coordinates.clone().filter(is_given).count(),
-        goals: named.into_iter().collect(),
-        voltages: layout.sought_inputs(),
-        intervals,
-        has_elements: !model.solids.is_empty(),
-    })
+    let rest = rows.iter().filter(is_rest).count();
+    let given = coordinates.clone().filter(is_given).count();
+    Some(BoundaryError::Overdetermined(format!(
+        "{equations} equations for {unknowns} unknowns. {}; {} voltages are sought in {intervals} intervals. {}",
+        asked(rest, given, &named),
+        layout.sought_inputs(),
+        cures(!model.solids.is_empty(), rest)
+    )))
+}
+
+/// Largest number of goals listed.
+const TOLD: usize = 6;
+
+/// Lists the parts of the goal with their numbers of equations.
+fn asked(rest: usize, given: usize, goals: &BTreeMap<String, usize>) -> String {
+    let mut parts = Vec::new();
+    if rest > 0 {
+        parts.push(format!("rest at the end is {rest} equations"));
+    }
+    if given > 0 {
+        parts.push(format!("the goal gives {given} coordinates"));
+    }
+    let told = goals.iter().take(TOLD);
+    parts.extend(told.map(|(name, count)| format!("{name} is {count}")));
+    if goals.len() > TOLD {
+        parts.push(format!("and {} more conditions", goals.len() - TOLD));
+    }
+    parts.join(", ")
+}
+
+/// Returns the changes that make them fewer.
+fn cures(has_elements: bool, rest: usize) -> &'static str {
+    match has_elements && rest > 0 {
+        true => {
+            "A few voltages cannot bring every node to rest: write \"rest\": \"bodies\" in the goal, so that bodies and the markers of the goal rest, \
+             with \"hold\" for the voltages that are held afterwards; or take fewer final conditions or more intervals"
+        }
+        false => "Take fewer final conditions, more intervals or more muscles",
+    }
 }
