@@ -1,30 +1,12 @@
 //! Errors of an identification: the data or the model do not allow one.
 
-use crate::control::BoundaryError;
-use crate::dynamics::StepError;
 use crate::model::NotSought;
 use thiserror::Error;
 
 /// Constants cannot be identified.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum IdentifyError {
-    /// The model of a recording does not exist, or it has no start.
-    #[error("recording \"{recording}\": {source}")]
-    Boundary {
-        /// The recording.
-        recording: String,
-        /// Reason.
-        source: BoundaryError,
-    },
-    /// The motion of a recording cannot be simulated.
-    #[error("recording \"{recording}\": {source}")]
-    Motion {
-        /// The recording.
-        recording: String,
-        /// Reason.
-        source: StepError,
-    },
-    /// A recording that is not offered.
+    /// A recording that is not offered, has no model or no start, or cannot be simulated.
     #[error("recording \"{recording}\": {reason}")]
     Refused {
         /// The recording.
@@ -70,12 +52,12 @@ pub enum IdentifyError {
 impl IdentifyError {
     /// The same error of a candidate, which computes as a recording does.
     pub(super) fn of_candidate(self) -> Self {
-        let (candidate, reason) = match self {
-            Self::Boundary { recording, source } => (recording, source.to_string()),
-            Self::Motion { recording, source } => (recording, source.to_string()),
-            Self::Refused { recording, reason } => (recording, reason),
-            other => return other,
-        };
-        Self::Candidate { candidate, reason }
+        match self {
+            Self::Refused { recording, reason } => Self::Candidate {
+                candidate: recording,
+                reason,
+            },
+            other => other,
+        }
     }
 }

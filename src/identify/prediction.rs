@@ -3,11 +3,11 @@
 //! The error of the midpoint rule is an even function of the step h, `y(h) = y + a h² + O(h⁴)`, so that `(4 y(h/2) − y(h))/3` is of
 //! fourth order, and so are its derivatives.
 
-use crate::control::StartDerivatives;
 use crate::control::problem::{BoundaryState, Identification, Prior, Recording, Regime, Voltages};
-use crate::dynamics::{DiscreteTrajectory, Equilibrium, Start, simulate};
+use crate::control::{StartDerivatives, rest_at};
+use crate::dynamics::{DiscreteTrajectory, Start, simulate};
 use crate::identify::error::IdentifyError;
-use crate::identify::readout::{Beginning, Course, CourseDerivatives, Prediction, derivatives};
+use crate::identify::readout::{Beginning, Course, Prediction, derivatives};
 use crate::identify::setup::{Problem, Setup};
 use crate::math::{cores, has_pool};
 use crate::model::Constant;
@@ -228,11 +228,8 @@ fn in_motion(
     let (discrete, failure) = simulate(model, &start, h, intervals, scalars, |_| {
         ControlFlow::Continue(())
     });
-    if let Some(source) = failure {
-        return Err(IdentifyError::Motion {
-            recording: recording.name.clone(),
-            source,
-        });
+    if let Some(failure) = failure {
+        return Err(recording.refused(failure));
     }
     if discrete.intervals() < intervals {
         return Err(IdentifyError::Stopped);
@@ -246,8 +243,8 @@ fn in_motion(
     let corners = setup.inputs.corners().into_iter();
     let course = Course {
         model,
-        discrete: &discrete,
-        derivatives: &by,
+        discrete,
+        derivatives: by,
         corners: corners.filter(|t| *t < recording.duration()).collect(),
         is_still: false,
     };
@@ -262,23 +259,22 @@ fn start_of(
     let constants = point.constants.len();
     let (start, mut out) = setup.start(constants, point.start)?;
     if let BoundaryState::RestAtVoltages(voltages, _) = &setup.control.start {
-        let state = setup.rest_under(voltages)?;
-        let voltages = Voltages::Constant(voltages.clone());
-        let by = of_rest(setup, &state, &voltages, constants)?.1;
-        let by = &by.instants[0];
-        out.coordinates.columns_mut(0, constants).copy_from(by);
+        let by = of_rest(setup, voltages, constants)?.derivatives;
+        let mut columns = out.coordinates.columns_mut(0, constants);
+        columns.copy_from(&by.instants[0]);
     }
     Ok((start, out))
 }
 
-/// A state of rest as a motion of two intervals, and its derivatives by the constants.
-fn of_rest(
-    setup: &Setup<'_>,
-    state: &Equilibrium,
-    voltages: &Voltages,
+/// The state of rest under voltages in V, by source, as a motion of two intervals, with its derivatives by the constants.
+fn of_rest<'a>(
+    setup: &'a Setup<'_>,
+    voltages: &[f64],
     constants: usize,
-) -> Result<(DiscreteTrajectory, CourseDerivatives), IdentifyError> {
+) -> Result<Course<'a>, IdentifyError> {
     let model = &setup.model;
+    let state = rest_at(model, voltages, "rest", 0.0);
+    let state = state.map_err(|error| setup.recording.refused(error))?;
     let start = Start::at_rest(model, state.z.clone());
     let lasting = |intervals: usize| {
         let z = vec![state.z.clone(); intervals + 1];
@@ -289,9 +285,16 @@ fn of_rest(
         derivatives: None,
         unknowns: constants,
     };
-    let by = derivatives(setup, from, &lasting(1), voltages)?;
+    let voltages = Voltages::Constant(voltages.to_vec());
+    let by = derivatives(setup, from, &lasting(1), &voltages)?;
     // What a joint transmits is read between two intervals.
-    Ok((lasting(2), by.lasting(2)))
+    Ok(Course {
+        model,
+        discrete: lasting(2),
+        derivatives: by.lasting(2),
+        corners: Vec::new(),
+        is_still: true,
+    })
 }
 
 /// States of rest, one for each time of a reading.
@@ -302,17 +305,8 @@ fn at_rest(setup: &Setup<'_>, point: Point<'_>) -> Result<Prediction, IdentifyEr
     times.sort_unstable_by(f64::total_cmp);
     times.dedup();
     for time in times {
-        let voltages = setup.inputs.undelayed.at(time).to_vec();
-        let state = setup.rest_under(&voltages)?;
-        let voltages = Voltages::Constant(voltages);
-        let (discrete, by) = of_rest(setup, &state, &voltages, point.constants.len())?;
-        let course = Course {
-            model: &setup.model,
-            discrete: &discrete,
-            derivatives: &by,
-            corners: Vec::new(),
-            is_still: true,
-        };
+        let voltages = setup.inputs.undelayed.at(time);
+        let course = of_rest(setup, &voltages, point.constants.len())?;
         let read = course.read(&recording.channels, point.count());
         for (row, reading) in recording.readings().enumerate() {
             if reading.time == time {

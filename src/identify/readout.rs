@@ -20,8 +20,8 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub(super) struct Course<'a> {
     pub(super) model: &'a Model,
-    pub(super) discrete: &'a DiscreteTrajectory,
-    pub(super) derivatives: &'a CourseDerivatives,
+    pub(super) discrete: DiscreteTrajectory,
+    pub(super) derivatives: CourseDerivatives,
     /// Times in ms at which inputs have corners or jumps.
     pub(super) corners: Vec<f64>,
     /// True of a state of rest, of which all times are the same.
@@ -296,7 +296,7 @@ pub(super) fn derivatives(
     let boundary = BoundaryConditions::without_goal(from.start.clone(), count);
     let initial = InitialGuess::of_motion(discrete.clone(), h);
     let program = Transcription::of_any(model, &boundary, &control, &initial);
-    let mut program = program.map_err(|error| setup.recording.wrong(error))?;
+    let mut program = program.map_err(|error| setup.recording.refused(error))?;
     let regime = match from.derivatives {
         Some(_) => Regime::Motion,
         None => Regime::Rest,
@@ -306,7 +306,8 @@ pub(super) fn derivatives(
     let mut x = program.encode(&initial.discrete, h);
     let solved = function.derivatives(&mut program, &mut x, from.unknowns, from.derivatives);
     let Some(solved) = solved else {
-        return Err(setup.refused("the equations of its derivatives are singular".to_owned()));
+        let singular = "the equations of its derivatives are singular";
+        return Err(setup.recording.refused(singular));
     };
     let columns = program.unknowns().columns.iter().copied();
     let columns = columns.zip(&function.columns);

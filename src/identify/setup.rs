@@ -17,10 +17,9 @@ use crate::control::problem::{
     BoundaryState, Control, Duration, Identification, Recording, SoughtStart, Voltages,
 };
 use crate::control::{
-    BoundaryError, MomentumSlopes, StartDerivatives, ends_that_read, momentum_slopes,
-    resolve_start, rest_at,
+    MomentumSlopes, StartDerivatives, ends_that_read, momentum_slopes, resolve_start,
 };
-use crate::dynamics::{Equilibrium, IndependentChanges, Start};
+use crate::dynamics::{IndependentChanges, Start};
 use crate::identify::error::IdentifyError;
 use crate::math::in_order;
 use crate::model::{
@@ -44,7 +43,6 @@ pub(super) struct Setup<'a> {
     pub(super) recording: &'a Recording,
     /// Voltages and loads with their gains and delays.
     pub(super) inputs: Inputs<'a>,
-    start: Cow<'a, BoundaryState>,
     pub(super) control: Control,
     pub(super) model: Model,
 }
@@ -95,11 +93,10 @@ impl<'a> Problem<'a> {
         }
         let model = Model::for_analysis(system, analysis);
         let setup = Setup {
-            model: model.map_err(|error| recording.wrong(error.into()))?,
+            model: model.map_err(|error| recording.refused(error))?,
             control,
             recording,
             inputs,
-            start,
         };
         setup.check()?;
         Ok(setup)
@@ -113,16 +110,15 @@ impl Setup<'_> {
         let mut constants = parameters.flat_map(|parameter| &parameter.constants);
         let are_joints = self.model.coordinates == Coordinates::Reduced;
         if !are_joints && constants.any(|one| one.constant.is_place()) {
-            return Err(self.refused(
-                "places of bodies, joints and markers are sought in joint coordinates alone"
-                    .to_owned(),
+            return Err(self.recording.refused(
+                "places of bodies, joints and markers are sought in joint coordinates alone",
             ));
         }
         for channel in &self.recording.channels {
             let parts = channel.parts.iter().map(|(_, quantity)| quantity);
             let mut silent = parts.filter(|q| lasts(q) && self.model.place_of(q).is_none());
             if silent.next().is_some() {
-                return Err(self.refused(format!(
+                return Err(self.recording.refused(format!(
                     "nothing of the model tells {}: of a joint that is fixed, in a loop, or where blocks are glued, of a part between points that do not move, or of a source that drives nothing",
                     channel.name
                 )));
@@ -130,26 +126,21 @@ impl Setup<'_> {
         }
         let is_of_rest = matches!(self.recording.start, BoundaryState::RestAtVoltages(..));
         if is_of_rest && self.recording.seeks_start() && self.model.action.map.multipliers > 0 {
-            return Err(self.refused(
-                "an unknown start near a state of rest is offered in joint coordinates alone; expected a start with \"joint_angles\""
-                    .to_owned(),
+            return Err(self.recording.refused(
+                "an unknown start near a state of rest is offered in joint coordinates alone; expected a start with \"joint_angles\"",
             ));
         }
         Ok(())
     }
 
-    pub(super) fn refused(&self, reason: String) -> IdentifyError {
-        self.recording.refused(reason)
-    }
-
     /// The start that the recording gives, and the changes of its momenta with sought masses.
     pub(super) fn given_start(&self) -> Result<(Start, Vec<MomentumSlopes>), IdentifyError> {
-        let found = resolve_start(&self.model, &self.start);
-        let mut start = found.map_err(|error| self.recording.wrong(error))?;
-        let slopes = momentum_slopes(&self.model, &self.start, &mut start);
+        let found = resolve_start(&self.model, &self.control.start);
+        let mut start = found.map_err(|error| self.recording.refused(error))?;
+        let slopes = momentum_slopes(&self.model, &self.control.start, &mut start);
         let slopes = slopes.map_err(|index| {
             let name = &self.control.parameters[index].name;
-            self.refused(format!(
+            self.recording.refused(format!(
                 "the momenta of its start are no straight line in {name}; expected a start at rest, with \"sought_start\": \"state\" where it moves"
             ))
         })?;
@@ -162,7 +153,10 @@ impl Setup<'_> {
             return Ok(None);
         }
         let found = IndependentChanges::at(&self.model, start.z.clone());
-        let many = || self.refused("an unknown start is offered of fewer coordinates".to_owned());
+        let many = || {
+            self.recording
+                .refused("an unknown start is offered of fewer coordinates")
+        };
         found.ok_or_else(many).map(Some)
     }
 
@@ -200,9 +194,9 @@ impl Setup<'_> {
         let basis = changes.basis();
         let (of_coordinates, of_momenta) = values.split_at(basis.ncols());
         let Some((z, slopes)) = changes.changed(of_coordinates) else {
-            return Err(
-                self.refused("its loops do not close at the start that is sought".to_owned())
-            );
+            return Err(self
+                .recording
+                .refused("its loops do not close at the start that is sought"));
         };
         start.z = z;
         let columns = by.coordinates.columns_mut(constants, slopes.ncols());
@@ -219,12 +213,6 @@ impl Setup<'_> {
             start.rates = None;
         }
         Ok((start, by))
-    }
-
-    /// The equilibrium under voltages in V, by source.
-    pub(super) fn rest_under(&self, voltages: &[f64]) -> Result<Equilibrium, IdentifyError> {
-        let found = rest_at(&self.model, voltages, "rest", 0.0);
-        found.map_err(|error| self.recording.wrong(error))
     }
 
     /// The problem whose transcription has the derivatives by the start too.
@@ -255,17 +243,10 @@ impl Recording {
     }
 
     /// That it is not offered.
-    pub(super) fn refused(&self, reason: String) -> IdentifyError {
+    pub(super) fn refused(&self, reason: impl ToString) -> IdentifyError {
         IdentifyError::Refused {
             recording: self.name.clone(),
-            reason,
-        }
-    }
-
-    pub(super) fn wrong(&self, source: BoundaryError) -> IdentifyError {
-        IdentifyError::Boundary {
-            recording: self.name.clone(),
-            source,
+            reason: reason.to_string(),
         }
     }
 }
