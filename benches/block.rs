@@ -5,7 +5,9 @@
 
 use nalgebra::Vector3;
 use proboscis::dynamics::{Newton, Solving, Start, Stepper};
-use proboscis::element::{Dielectric, Elastomer, ElementGeometry, Local, Passive, Volume};
+use proboscis::element::{
+    Dielectric, Elastomer, ElementEnergy, ElementGeometry, Local, NodeState, Passive, Volume,
+};
 use proboscis::energy::NeoHooke;
 use proboscis::model::Model;
 use proboscis::model::system::VACUUM_PERMITTIVITY;
@@ -111,20 +113,12 @@ fn element() -> String {
             field: Passive,
             law: NeoHooke,
         };
+        let at = NodeState::new(&shape, &x, &());
+        let moving = at.along(&places, &());
         let times = [
-            least(|| law.gradient(black_box(&shape), black_box(&x), &(), &mut passive)),
-            least(|| law.tangent(black_box(&shape), black_box(&x), &(), &mut passive)),
-            least(|| {
-                law.third(
-                    &shape,
-                    black_box(&x),
-                    &(),
-                    &places,
-                    &(),
-                    &mut passive,
-                    &mut passive_along,
-                );
-            }),
+            least(|| law.gradient(black_box(&at), &mut passive)),
+            least(|| law.tangent(black_box(&at), &mut passive)),
+            least(|| law.third(black_box(&moving), &mut passive, &mut passive_along)),
         ];
         rows.push_str(&line(&format!("elastic {name}"), times));
         let law = Elastomer {
@@ -138,21 +132,12 @@ fn element() -> String {
             },
             law: NeoHooke,
         };
-        let p = &potentials;
+        let at = NodeState::new(&shape, &x, &potentials);
+        let moving = at.along(&places, &potentials);
         let times = [
-            least(|| law.gradient(black_box(&shape), black_box(&x), p, &mut dielectric)),
-            least(|| law.tangent(black_box(&shape), black_box(&x), p, &mut dielectric)),
-            least(|| {
-                law.third(
-                    &shape,
-                    black_box(&x),
-                    p,
-                    &places,
-                    p,
-                    &mut dielectric,
-                    &mut along,
-                );
-            }),
+            least(|| law.gradient(black_box(&at), &mut dielectric)),
+            least(|| law.tangent(black_box(&at), &mut dielectric)),
+            least(|| law.third(black_box(&moving), &mut dielectric, &mut along)),
         ];
         rows.push_str(&line(&format!("dielectric {name}"), times));
     }

@@ -1,7 +1,6 @@
 //! Numbers with their derivative along a direction.
 
 use super::number::{Points, Real};
-use crate::math::Vector;
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A number `value` + ε `rate` with its derivative along a direction, ε² = 0.
@@ -57,28 +56,6 @@ where
         }
         rates
     }
-}
-
-/// Nodes at `x` that move along `w`.
-#[inline(always)]
-pub(super) fn moving<const NODES: usize>(
-    x: &[Vector; NODES],
-    w: &[Vector; NODES],
-) -> [[Dual<f64>; 3]; NODES] {
-    let zero = Dual {
-        value: 0.0,
-        rate: 0.0,
-    };
-    let mut nodes = [[zero; 3]; NODES];
-    for i in 0..NODES {
-        for a in 0..3 {
-            nodes[i][a] = Dual {
-                value: x[i][a],
-                rate: w[i][a],
-            };
-        }
-    }
-    nodes
 }
 
 impl<T: Real> Add for Dual<T> {
@@ -219,6 +196,22 @@ impl<P: Points<Plain = P>> Points for Dual<P> {
     #[inline(always)]
     fn load(token: Self::Token, values: &[f64; 8]) -> P {
         P::load(token, values)
+    }
+
+    #[inline(always)]
+    fn uniform(value: f64, rate: f64) -> Self::Uniform {
+        Dual {
+            value: P::uniform(value, 0.0),
+            rate: P::uniform(rate, 0.0),
+        }
+    }
+
+    #[inline(always)]
+    fn moving(token: Self::Token, values: &[f64; 8], rates: &[f64; 8]) -> Self {
+        Self {
+            value: P::load(token, values),
+            rate: P::load(token, rates),
+        }
     }
 
     #[inline(always)]

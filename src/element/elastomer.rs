@@ -1,15 +1,12 @@
 //! The material law of an elastomer, passive or dielectric, and the energy of an element of it.
 
-use super::dual::{Dual, moving};
-use super::geometry::ElementGeometry;
+use super::evaluation::{ElementEnergy, NodeState};
 use super::isochoric::{ElementLaw, IsochoricLaw};
-use super::lanes::{Lanes, Task, dispatch};
 use super::law::{Dielectric, Field, Passive, Volume};
-use super::local::{Local, Output, Pair};
+use super::local::{Local, Output};
+use super::number::Points;
 use super::variations::{ElementState, Variations};
 use crate::energy::NeoHooke;
-use crate::math::Vector;
-use pulp::Simd;
 
 /// A compressible neo-Hookean elastomer, with the electric part of its energy where it is [`Dielectric`](crate::element::Dielectric).
 ///
@@ -105,156 +102,39 @@ impl<F: Field, L: ElementLaw> Elastomer<F, L> {
             law: self.law,
         }
     }
-
-    /// Energy W in mJ of the element `shape` with nodes at `x` in mm and their potentials in V.
-    pub fn energy<const NODES: usize>(
-        &self,
-        shape: &ElementGeometry<NODES>,
-        x: &[Vector; NODES],
-        potentials: &F::Potentials<NODES>,
-    ) -> f64 {
-        let mut energy = 0.0;
-        self.write::<0, NODES>(shape, x, potentials, &mut energy);
-        energy
-    }
-
-    /// Fills energy, forces and charges.
-    pub fn gradient<const NODES: usize>(
-        &self,
-        shape: &ElementGeometry<NODES>,
-        x: &[Vector; NODES],
-        potentials: &F::Potentials<NODES>,
-        local: &mut Local<F, NODES>,
-    ) {
-        self.write::<1, NODES>(shape, x, potentials, local);
-    }
-
-    /// Fills everything: energy, gradient, and stiffness, coupling and permittivity.
-    pub fn tangent<const NODES: usize>(
-        &self,
-        shape: &ElementGeometry<NODES>,
-        x: &[Vector; NODES],
-        potentials: &F::Potentials<NODES>,
-        local: &mut Local<F, NODES>,
-    ) {
-        self.write::<2, NODES>(shape, x, potentials, local);
-    }
-
-    /// Fills `plain` as [`tangent`](Self::tangent) does, and `along` with the derivatives of all of it along
-    /// (w, w_potentials): the second and third derivatives contracted with that direction.
-    #[expect(
-        clippy::too_many_arguments,
-        reason = "a state, a direction, and their two results"
-    )]
-    pub fn third<const NODES: usize>(
-        &self,
-        shape: &ElementGeometry<NODES>,
-        x: &[Vector; NODES],
-        potentials: &F::Potentials<NODES>,
-        w: &[Vector; NODES],
-        w_potentials: &F::Potentials<NODES>,
-        plain: &mut Local<F, NODES>,
-        along: &mut Local<F, NODES>,
-    ) {
-        dispatch(RatesTask {
-            law: self,
-            shape,
-            x,
-            potentials,
-            w,
-            w_potentials,
-            out: Pair { plain, along },
-        });
-    }
 }
 
-impl<F: Field, L: ElementLaw> Elastomer<F, L> {
-    fn write<const ORDER: usize, const NODES: usize>(
-        &self,
-        shape: &ElementGeometry<NODES>,
-        x: &[Vector; NODES],
-        potentials: &F::Potentials<NODES>,
-        out: &mut impl Output<f64>,
-    ) {
-        dispatch(DerivativesTask::<_, _, _, ORDER, NODES> {
-            law: self,
-            shape,
-            x,
-            potentials,
-            out,
-        });
-    }
-}
+impl<F: Field, L: ElementLaw, const NODES: usize> ElementEnergy<NODES> for Elastomer<F, L> {
+    type Arguments = F::Potentials<NODES>;
+    type Local = Local<F, NODES>;
 
-/// Derivatives to the order `ORDER` at a state.
-struct DerivativesTask<'a, F: Field, L, O, const ORDER: usize, const NODES: usize> {
-    law: &'a Elastomer<F, L>,
-    shape: &'a ElementGeometry<NODES>,
-    x: &'a [Vector; NODES],
-    potentials: &'a F::Potentials<NODES>,
-    out: &'a mut O,
-}
-
-impl<F: Field, L: ElementLaw, O: Output<f64>, const ORDER: usize, const NODES: usize> Task
-    for DerivativesTask<'_, F, L, O, ORDER, NODES>
-{
     #[inline(always)]
-    fn run<S: Simd, const K: usize>(self, unit: S) {
-        let mut x = [[0.0; 3]; NODES];
-        for i in 0..NODES {
-            x[i] = [self.x[i].x, self.x[i].y, self.x[i].z];
-        }
-        let electric = self.law.field.constants(self.potentials);
-        let [shear_modulus, lame_lambda] = self.law.moduli();
-        let state = ElementState {
-            token: unit,
-            shear_modulus,
-            lame_lambda,
-            isochoric: self.law.isochoric(),
-            volume: self.law.volume,
-            shape: self.shape,
-            x: &x,
-            electric: electric.as_ref().map(|(constants, phi)| (constants, phi)),
-        };
-        Variations::<Lanes<S, K>>::write::<ORDER, NODES>(&state, self.out);
-    }
-}
-
-/// Second derivatives at a state, and their rates along a direction.
-struct RatesTask<'a, F: Field, L, const NODES: usize> {
-    law: &'a Elastomer<F, L>,
-    shape: &'a ElementGeometry<NODES>,
-    x: &'a [Vector; NODES],
-    potentials: &'a F::Potentials<NODES>,
-    w: &'a [Vector; NODES],
-    w_potentials: &'a F::Potentials<NODES>,
-    out: Pair<'a, Local<F, NODES>>,
-}
-
-impl<F: Field, L: ElementLaw, const NODES: usize> Task for RatesTask<'_, F, L, NODES> {
-    #[inline(always)]
-    fn run<S: Simd, const K: usize>(mut self, unit: S) {
-        let dual = |value: f64, rate: f64| Dual { value, rate };
-        let x = moving(self.x, self.w);
-        let values = self.law.field.constants(self.potentials);
-        let rates = self.law.field.constants(self.w_potentials);
-        let mut phi = [dual(0.0, 0.0); NODES];
-        if let (Some((_, value)), Some((_, rate))) = (&values, &rates) {
+    fn write<N: Points, const ORDER: usize>(
+        &self,
+        token: N::Token,
+        at: &NodeState<'_, F::Potentials<NODES>, NODES>,
+        out: &mut impl Output<N::Uniform>,
+    ) {
+        let [values, rates] = at
+            .arguments
+            .map(|potentials| self.field.constants(potentials));
+        let mut phi = [N::uniform(0.0, 0.0); NODES];
+        if let (Some((_, values)), Some((_, rates))) = (&values, &rates) {
             for i in 0..NODES {
-                phi[i] = dual(value[i], rate[i]);
+                phi[i] = N::uniform(values[i], rates[i]);
             }
         }
-        let [shear_modulus, lame_lambda] = self.law.moduli();
+        let [shear_modulus, lame_lambda] = self.moduli();
         let state = ElementState {
-            token: unit,
+            token,
             shear_modulus,
             lame_lambda,
-            isochoric: self.law.isochoric(),
-            volume: self.law.volume,
-            shape: self.shape,
-            x: &x,
+            isochoric: self.isochoric(),
+            volume: self.volume,
+            shape: at.shape,
+            x: &at.places::<N>(),
             electric: values.as_ref().map(|(constants, _)| (constants, &phi)),
         };
-        Variations::<Dual<Lanes<S, K>>>::write::<2, NODES>(&state, &mut self.out);
+        Variations::<N>::write::<ORDER, NODES>(&state, out);
     }
 }

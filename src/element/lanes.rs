@@ -146,6 +146,16 @@ impl<S: Simd, const K: usize> Points for Lanes<S, K> {
     }
 
     #[inline(always)]
+    fn uniform(value: f64, _: f64) -> f64 {
+        value
+    }
+
+    #[inline(always)]
+    fn moving(unit: S, values: &[f64; 8], _: &[f64; 8]) -> Self {
+        Self::load(unit, values)
+    }
+
+    #[inline(always)]
     fn plus_plain(self, b: Self) -> Self {
         self + b
     }

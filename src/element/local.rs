@@ -32,7 +32,7 @@ impl<F: Field, const NODES: usize> Default for Local<F, NODES> {
 }
 
 /// Receiver of the variations of an energy, as numbers `U`; it drops those that a reader does not ask for.
-pub(super) trait Output<U> {
+pub trait Output<U> {
     fn energy(&mut self, value: U);
     fn force(&mut self, _i: usize, _value: [U; 3]) {}
     /// The block (i, j) and, transposed, (j, i).

@@ -1,13 +1,11 @@
 //! The spring of a Maxwell branch of an element, and viscous strains that have relaxed.
 
 use super::branch::Branch;
-use super::dual::{Dual, moving};
+use super::evaluation::{ElementEnergy, NodeState};
 use super::geometry::ElementGeometry;
-use super::lanes::{Lanes, Task, dispatch};
-use super::local::{BranchLocal, COORDINATES, Output, Pair};
+use super::local::{BranchLocal, COORDINATES, Output};
 use super::number::Points;
 use crate::math::{Matrix, Vector};
-use pulp::Simd;
 
 /// Coordinates (z₁, z₂, a, b, c) of the viscous strain at the Gauss points, `[coordinate][point]`.
 ///
@@ -26,59 +24,6 @@ pub struct MaxwellSpring {
 }
 
 impl MaxwellSpring {
-    /// Energy W in mJ of the element `shape` with nodes at `x` in mm.
-    pub fn energy<const NODES: usize>(
-        &self,
-        shape: &ElementGeometry<NODES>,
-        x: &[Vector; NODES],
-        strains: &ViscousStrains,
-    ) -> f64 {
-        let mut energy = 0.0;
-        self.write::<0, NODES>(shape, x, strains, &mut energy);
-        energy
-    }
-
-    /// Fills energy and first derivatives.
-    pub fn gradient<const NODES: usize>(
-        &self,
-        shape: &ElementGeometry<NODES>,
-        x: &[Vector; NODES],
-        strains: &ViscousStrains,
-        local: &mut BranchLocal<NODES>,
-    ) {
-        self.write::<1, NODES>(shape, x, strains, local);
-    }
-
-    /// Fills everything.
-    pub fn tangent<const NODES: usize>(
-        &self,
-        shape: &ElementGeometry<NODES>,
-        x: &[Vector; NODES],
-        strains: &ViscousStrains,
-        local: &mut BranchLocal<NODES>,
-    ) {
-        self.write::<2, NODES>(shape, x, strains, local);
-    }
-
-    /// Fills `plain` as [`tangent`](Self::tangent) does, and `along` with the derivatives of all of it along the rates of places and strains,
-    /// which follow these.
-    pub fn third<const NODES: usize>(
-        &self,
-        shape: &ElementGeometry<NODES>,
-        places: [&[Vector; NODES]; 2],
-        strains: [&ViscousStrains; 2],
-        plain: &mut BranchLocal<NODES>,
-        along: &mut BranchLocal<NODES>,
-    ) {
-        dispatch(Along {
-            law: self,
-            shape,
-            places,
-            strains,
-            out: Pair { plain, along },
-        });
-    }
-
     /// Cauchy stress `μ₁/J^(5/3) (F A Fᵀ − ⅓ C:A 1)` in MPa with A = C_i⁻¹, its mean over the reference volume.
     #[expect(non_snake_case, reason = "notation of the law")]
     pub fn stress<const NODES: usize>(
@@ -100,73 +45,26 @@ impl MaxwellSpring {
         let weights = shape.weights().iter().enumerate();
         weights.map(at).sum::<Matrix>() / shape.volume()
     }
+}
 
-    fn write<const ORDER: usize, const NODES: usize>(
+impl<const NODES: usize> ElementEnergy<NODES> for MaxwellSpring {
+    type Arguments = ViscousStrains;
+    type Local = BranchLocal<NODES>;
+
+    #[inline(always)]
+    fn write<N: Points, const ORDER: usize>(
         &self,
-        shape: &ElementGeometry<NODES>,
-        x: &[Vector; NODES],
-        strains: &ViscousStrains,
-        out: &mut impl Output<f64>,
+        token: N::Token,
+        at: &NodeState<'_, ViscousStrains, NODES>,
+        out: &mut impl Output<N::Uniform>,
     ) {
-        dispatch(Plain::<_, ORDER, NODES> {
-            law: self,
-            shape,
-            x,
-            strains,
-            out,
-        });
-    }
-}
-
-/// Derivatives to the order `ORDER` at a state.
-struct Plain<'a, O, const ORDER: usize, const NODES: usize> {
-    law: &'a MaxwellSpring,
-    shape: &'a ElementGeometry<NODES>,
-    x: &'a [Vector; NODES],
-    strains: &'a ViscousStrains,
-    out: &'a mut O,
-}
-
-impl<O: Output<f64>, const ORDER: usize, const NODES: usize> Task for Plain<'_, O, ORDER, NODES> {
-    #[inline(always)]
-    fn run<S: Simd, const K: usize>(self, unit: S) {
-        let mut x = [[0.0; 3]; NODES];
-        for i in 0..NODES {
-            x[i] = [self.x[i].x, self.x[i].y, self.x[i].z];
-        }
-        let mut q = [Lanes::<S, K>::constant(unit, 0.0); COORDINATES];
+        let [strains, rates] = at.arguments;
+        let mut q = [N::constant(token, 0.0); COORDINATES];
         for m in 0..COORDINATES {
-            q[m] = Lanes::<S, K>::load(unit, &self.strains[m]);
+            q[m] = N::moving(token, &strains[m], &rates[m]);
         }
-        let mu = self.law.shear_modulus;
-        Branch::write::<ORDER, NODES>(unit, mu, self.shape, &x, q, self.out);
-    }
-}
-
-/// Second derivatives at a state, and their rates along a direction.
-struct Along<'a, const NODES: usize> {
-    law: &'a MaxwellSpring,
-    shape: &'a ElementGeometry<NODES>,
-    /// Places, and their rates; strains, and theirs.
-    places: [&'a [Vector; NODES]; 2],
-    strains: [&'a ViscousStrains; 2],
-    out: Pair<'a, BranchLocal<NODES>>,
-}
-
-impl<const NODES: usize> Task for Along<'_, NODES> {
-    #[inline(always)]
-    fn run<S: Simd, const K: usize>(mut self, unit: S) {
-        let [x, w] = self.places;
-        let x = moving(x, w);
-        let mut q = [Dual::<Lanes<S, K>>::constant(unit, 0.0); COORDINATES];
-        for m in 0..COORDINATES {
-            q[m] = Dual {
-                value: Lanes::<S, K>::load(unit, &self.strains[0][m]),
-                rate: Lanes::<S, K>::load(unit, &self.strains[1][m]),
-            };
-        }
-        let mu = self.law.shear_modulus;
-        Branch::write::<2, NODES>(unit, mu, self.shape, &x, q, &mut self.out);
+        let x = at.places::<N>();
+        Branch::write::<ORDER, NODES>(token, self.shear_modulus, at.shape, &x, q, out);
     }
 }
 

@@ -21,6 +21,7 @@ mod branch;
 mod dilatation;
 mod dual;
 mod elastomer;
+mod evaluation;
 mod fields;
 mod geometry;
 mod isochoric;
@@ -34,6 +35,7 @@ mod viscosity;
 
 pub use dilatation::{Dilatation, second_derivatives_of_volume};
 pub use elastomer::Elastomer;
+pub use evaluation::{ElementEnergy, NodeState};
 pub use fields::{FieldPoint, Fields, SpatialField};
 pub use geometry::{ElementGeometry, Inverted};
 pub use isochoric::{ElementLaw, IsochoricLaw};

@@ -11,7 +11,7 @@
 use std::ops::{Add, Mul, Neg, Sub};
 
 /// A number of a field, with the functions that material laws need.
-pub(super) trait Real:
+pub trait Real:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self>
 {
     /// self + a b.
@@ -31,7 +31,7 @@ pub(super) trait Real:
 }
 
 /// A number at each of the eight Gauss points.
-pub(super) trait Points: Real {
+pub trait Points: Real {
     /// The vector unit.
     type Token: Copy;
     /// Numbers of the reference configuration, without derivative.
@@ -45,6 +45,10 @@ pub(super) trait Points: Real {
     fn constant(token: Self::Token, value: f64) -> Self;
     /// Numbers of the reference configuration.
     fn load(token: Self::Token, values: &[f64; 8]) -> Self::Plain;
+    /// A number with its rate along a direction, which numbers without derivative drop.
+    fn uniform(value: f64, rate: f64) -> Self::Uniform;
+    /// The same at each point.
+    fn moving(token: Self::Token, values: &[f64; 8], rates: &[f64; 8]) -> Self;
     /// self + b.
     fn plus_plain(self, b: Self::Plain) -> Self;
     /// self b.

@@ -6,12 +6,14 @@
 //! are laws themselves, so that those of an element by π are sums of elements: `∂W/∂π = J′ W_J` and `∂²W/∂π² = J′² W_JJ + J″ W_J`.
 
 use crate::element::{
-    Dielectric, Dilatation, Elastomer, ElementGeometry, ElementLaw, Field, FieldPoint,
-    IsochoricLaw, Local, Passive, SpatialField, second_derivatives_of_volume,
+    Dielectric, Dilatation, Elastomer, ElementEnergy, ElementGeometry, ElementLaw, Field,
+    FieldPoint, IsochoricLaw, Local, NodeState, Passive, SpatialField,
+    second_derivatives_of_volume,
 };
-use crate::energy::{Coefficient, NeoHooke};
+use crate::energy::NeoHooke;
+use crate::functional::scaled::{Factor, FreeConstant, OfConstant};
 use crate::functional::{Kernel, Order, Sample, ScalarArg, Scatter, Stencil, VectorArg};
-use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
+use crate::math::{Derivatives, Matrix, Vector};
 use std::fmt;
 use std::sync::Arc;
 
@@ -89,6 +91,27 @@ impl<P: Derivatives, A: Derivatives> Variations<P, A> {
     }
 }
 
+impl<P> Variations<P> {
+    /// Fills them up to an order by an energy at a state, and by its rates along the direction.
+    pub(super) fn fill<E: ElementEnergy<NODES, Local = P>, const NODES: usize>(
+        &mut self,
+        order: Order,
+        law: &E,
+        at: NodeState<'_, E::Arguments, NODES>,
+        rates: impl FnOnce() -> ([Vector; NODES], E::Arguments),
+    ) {
+        let Self { plain, along } = self;
+        match order {
+            Order::Gradient => law.gradient(&at, plain),
+            Order::Hessian => law.tangent(&at, plain),
+            Order::Third => {
+                let (w, rates) = rates();
+                law.third(&at.along(&w, &rates), plain, along);
+            }
+        }
+    }
+}
+
 /// Half the sum of both instants.
 #[inline(always)]
 pub(super) fn middle<const NODES: usize>(
@@ -162,14 +185,15 @@ impl<F: Electrical, L: ElementLaw, const NODES: usize> Kernel for FiniteElement<
     fn energy(&self, sample: &Sample<'_>) -> f64 {
         let x = middle(sample.vectors, &self.nodes);
         let potentials = self.potentials(sample.scalars);
-        self.law.energy(&self.shape, &x, &potentials)
+        let at = NodeState::new(&self.shape, &x, &potentials);
+        self.law.energy(&at)
     }
 
     /// The energy without the field.
     fn first_part(&self, sample: &Sample<'_>) -> f64 {
         let x = middle(sample.vectors, &self.nodes);
         let law = self.law.passive();
-        law.energy(&self.shape, &x, &())
+        law.energy(&NodeState::new(&self.shape, &x, &()))
     }
 
     fn volume(&self, sample: &Sample<'_>) -> Option<Dilatation> {
@@ -191,25 +215,15 @@ impl<F: Electrical, L: ElementLaw, const NODES: usize> Kernel for FiniteElement<
         rows?.try_into().ok()
     }
 
-    fn prepare(
-        &self,
-        order: Order,
-        sample: &Sample<'_>,
-        Variations { plain, along }: &mut Variations<Local<F, NODES>>,
-    ) {
-        let Self { shape, law, .. } = self;
+    fn prepare(&self, order: Order, sample: &Sample<'_>, to: &mut Self::Storage) {
         let x = middle(sample.vectors, &self.nodes);
         let potentials = self.potentials(sample.scalars);
-        match order {
-            Order::Gradient => law.gradient(shape, &x, &potentials, plain),
-            Order::Hessian => law.tangent(shape, &x, &potentials, plain),
-            Order::Third => {
-                let w = middle(sample.along, &self.nodes);
-                let terminals = F::terminals::<NODES>(&self.terminals);
-                let rates = F::potentials::<NODES>(|i| terminals[i].rate(sample.scalars_along));
-                law.third(shape, &x, &potentials, &w, &rates, plain, along);
-            }
-        }
+        let at = NodeState::new(&self.shape, &x, &potentials);
+        to.fill(order, &self.law, at, || {
+            let terminals = F::terminals::<NODES>(&self.terminals);
+            let rates = F::potentials::<NODES>(|i| terminals[i].rate(sample.scalars_along));
+            (middle(sample.along, &self.nodes), rates)
+        });
     }
 
     #[inline(always)]
@@ -297,7 +311,7 @@ impl<const NODES: usize> Kernel for ElementField<NODES> {
     }
 }
 
-/// One finite element without a field; the parameter is its only scalar.
+/// One finite element without a field whose limit follows a parameter, its only scalar.
 #[derive(Clone, Debug)]
 pub struct VariedElement<const NODES: usize = 8> {
     /// Gradients of the shape functions, which all elements of one place share.
@@ -307,66 +321,20 @@ pub struct VariedElement<const NODES: usize = 8> {
     /// Vectors of the nodes.
     pub nodes: [usize; NODES],
     /// Gent's limit Jₘ.
-    pub limit: Coefficient,
-    /// The parameter that it follows, a scalar of the interval.
-    pub parameter: usize,
-}
-
-/// Derivatives of the energy W of an element and of W_J and W_JJ, and their rates along the direction.
-type LimitVariations<const NODES: usize> = Variations<[Local<Passive, NODES>; 3]>;
-
-/// The limit with its derivatives J′ and J″ by the parameter.
-fn limit<const NODES: usize>(element: &VariedElement<NODES>, sample: &Sample<'_>) -> HyperDual {
-    let mut number = HyperDual::of(sample.scalars[element.parameter]);
-    (number.value.part, number.part.value) = (1.0, 1.0);
-    element.limit.at(&[number])
+    pub limit: FreeConstant,
 }
 
 impl<const NODES: usize> VariedElement<NODES> {
-    /// The element at a limit.
-    fn at(&self, limit: f64) -> Elastomer<Passive, IsochoricLaw> {
+    /// The law at a sample.
+    fn law(&self, sample: &Sample<'_>) -> Elastomer<Passive, IsochoricLaw> {
+        let limit = self.limit.value(sample);
         self.law.by(IsochoricLaw::Gent { limit })
     }
 }
 
-/// Derivatives of a scalar S(x̄, J) from those of itself, S_J and S_JJ.
-struct ByLimit<'a, const NODES: usize> {
-    of: &'a [Local<Passive, NODES>; 3],
-    /// The scalar with S_J and S_JJ, where derivatives by π alone are asked for.
-    values: [f64; 3],
-    slope: f64,
-    curvature: f64,
-}
-
-impl<const NODES: usize> Derivatives for ByLimit<'_, NODES> {
-    #[inline(always)]
-    fn force(&self, i: usize) -> Vector {
-        self.of[0].forces[i]
-    }
-
-    #[inline(always)]
-    fn row(&self, _: usize) -> f64 {
-        self.slope * self.values[1]
-    }
-
-    #[inline(always)]
-    fn block(&self, i: usize, j: usize) -> Matrix {
-        self.of[0].stiffness[i][j]
-    }
-
-    #[inline(always)]
-    fn column(&self, i: usize, _: usize) -> Vector {
-        self.of[1].forces[i] * self.slope
-    }
-
-    #[inline(always)]
-    fn entry(&self, _: usize, _: usize) -> f64 {
-        self.slope * self.slope * self.values[2] + self.curvature * self.values[1]
-    }
-}
-
 impl<const NODES: usize> Kernel for VariedElement<NODES> {
-    type Storage = LimitVariations<NODES>;
+    /// Derivatives of the energy W of an element and of W_J and W_JJ.
+    type Storage = [Variations<Local<Passive, NODES>>; 3];
 
     #[inline(always)]
     fn vectors(&self) -> usize {
@@ -385,33 +353,23 @@ impl<const NODES: usize> Kernel for VariedElement<NODES> {
 
     #[inline(always)]
     fn scalar(&self, _: usize) -> Option<(usize, f64)> {
-        Some((self.parameter, 1.0))
+        Some((self.limit.parameters[0], 1.0))
     }
 
     fn energy(&self, sample: &Sample<'_>) -> f64 {
         let x = middle(sample.vectors, &self.nodes);
-        let law = self.at(limit(self, sample).real());
-        law.energy(&self.shape, &x, &())
+        let at = NodeState::new(&self.shape, &x, &());
+        self.law(sample).energy(&at)
     }
 
-    fn prepare(
-        &self,
-        order: Order,
-        sample: &Sample<'_>,
-        Variations { plain, along }: &mut LimitVariations<NODES>,
-    ) {
+    fn prepare(&self, order: Order, sample: &Sample<'_>, storage: &mut Self::Storage) {
         let x = middle(sample.vectors, &self.nodes);
-        let w = middle(sample.along, &self.nodes);
-        let shape = &self.shape;
-        let law = self.at(limit(self, sample).real());
+        let at = NodeState::new(&self.shape, &x, &());
+        let law = self.law(sample);
         let [slope, curvature] = law.law.by_limit().expect("it is Gent's law");
         let laws = [law, law.by(slope), law.by(curvature)];
-        for ((law, plain), along) in laws.iter().zip(plain).zip(along) {
-            match order {
-                Order::Gradient => law.gradient(shape, &x, &(), plain),
-                Order::Hessian => law.tangent(shape, &x, &(), plain),
-                Order::Third => law.third(shape, &x, &(), &w, &(), plain, along),
-            }
+        for (law, to) in laws.iter().zip(storage) {
+            to.fill(order, law, at, || (middle(sample.along, &self.nodes), ()));
         }
     }
 
@@ -419,21 +377,29 @@ impl<const NODES: usize> Kernel for VariedElement<NODES> {
         &self,
         order: Order,
         sample: &Sample<'_>,
-        Variations { plain, along }: &LimitVariations<NODES>,
+        storage: &Self::Storage,
         to: &mut S,
     ) {
-        let limit = limit(self, sample);
-        let by_limit = |of, values| ByLimit {
-            of,
-            values,
-            slope: limit.value.part,
-            curvature: limit.part.part,
-        };
-        let of_energy = by_limit(plain, plain.each_ref().map(|local| local.energy));
-        to.plain(&of_energy);
+        let factor = self.limit.factor(sample);
+        let plain = by_limit(factor, storage.each_ref().map(|one| &one.plain));
+        to.plain(&plain);
         if order == Order::Third {
-            let contractions = along.each_ref().map(|local| local.energy);
-            to.along(&of_energy, &by_limit(along, contractions));
+            let along = storage.each_ref().map(|one| &one.along);
+            to.along(&plain, &by_limit(factor, along));
         }
+    }
+}
+
+/// Derivatives of an energy by nodes and the parameter of its limit, from those of itself and of its derivatives by the limit.
+fn by_limit<const NODES: usize>(
+    factor: Factor,
+    [of, slope, curvature]: [&Local<Passive, NODES>; 3],
+) -> OfConstant<'_, Local<Passive, NODES>> {
+    OfConstant {
+        scale: 1.0,
+        factor,
+        base: 0,
+        of: [of, slope],
+        values: [slope.energy, curvature.energy],
     }
 }

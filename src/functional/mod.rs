@@ -44,7 +44,7 @@ pub use measured::Curved;
 pub use node_blocks::{NodeBlocks, NodeVolume, Pressures, ScalarPlace, VectorPlace};
 pub use paths::Path;
 pub use pressure::PressureFace;
-pub use scaled::ScaledElement;
+pub use scaled::{FreeConstant, ScaledElement};
 pub use stencil::{ScalarArg, Stencil, VectorArg};
 pub use sum::Sum;
 pub use term::{

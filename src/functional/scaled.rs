@@ -10,26 +10,33 @@ use crate::math::{Derivatives, HyperDual, Matrix, Number, Vector};
 /// Most parameters that one element follows: a viscous one of a Maxwell branch follows its modulus and its relaxation time.
 const MOST: usize = 2;
 
+/// A constant c that follows free parameters.
+#[derive(Clone, Debug)]
+pub struct FreeConstant {
+    /// The constant.
+    pub of: Coefficient,
+    /// Parameters that it follows, scalars of the interval, two at most.
+    pub parameters: Vec<usize>,
+}
+
 /// One element.
 #[derive(Clone, Debug)]
 pub struct ScaledElement<E> {
     /// The element E.
     pub of: E,
     /// The constant c.
-    pub factor: Coefficient,
-    /// Parameters that they follow, scalars of the interval, two at most.
-    pub parameters: Vec<usize>,
+    pub factor: FreeConstant,
 }
 
-/// The constant c of an element with its derivatives by its parameters.
+/// A constant with its derivatives by its parameters.
 #[derive(Clone, Copy)]
-struct Factor {
+pub(super) struct Factor {
     value: f64,
     slopes: [f64; MOST],
     curvatures: [[f64; MOST]; MOST],
 }
 
-impl<E> ScaledElement<E> {
+impl FreeConstant {
     fn parameters(&self, sample: &Sample<'_>) -> [f64; MOST] {
         let mut values = [0.0; MOST];
         for (value, &scalar) in values.iter_mut().zip(&self.parameters) {
@@ -38,14 +45,16 @@ impl<E> ScaledElement<E> {
         values
     }
 
-    fn value(&self, sample: &Sample<'_>) -> f64 {
-        self.factor.at(&self.parameters(sample))
+    /// Its value.
+    pub(super) fn value(&self, sample: &Sample<'_>) -> f64 {
+        self.of.at(&self.parameters(sample))
     }
 
-    fn factor(&self, sample: &Sample<'_>) -> Factor {
+    /// Its value with derivatives.
+    pub(super) fn factor(&self, sample: &Sample<'_>) -> Factor {
         let values = self.parameters(sample);
         let mut factor = Factor {
-            value: self.factor.at(&values),
+            value: self.of.at(&values),
             slopes: [0.0; MOST],
             curvatures: [[0.0; MOST]; MOST],
         };
@@ -54,7 +63,7 @@ impl<E> ScaledElement<E> {
                 let mut numbers = values.map(HyperDual::of);
                 numbers[i].value.part = 1.0;
                 numbers[j].part.value = 1.0;
-                let by = self.factor.at(&numbers);
+                let by = self.of.at(&numbers);
                 factor.slopes[i] = by.value.part;
                 factor.curvatures[i][j] = by.part.part;
                 factor.curvatures[j][i] = by.part.part;
@@ -64,52 +73,58 @@ impl<E> ScaledElement<E> {
     }
 }
 
-/// Derivatives of c E from those of E, or of its contraction from those of the contraction of E.
-struct Times<'a, D> {
-    factor: Factor,
-    /// Number of scalars of E.
-    base: usize,
-    of: &'a D,
-    /// The contraction of E; zero of E itself, whose value nobody asks for.
-    value: f64,
+/// Derivatives of a scalar S(x, c(π)) from those of S and of S_c by x.
+pub(super) struct OfConstant<'a, D> {
+    /// Factor of S, which is c where S is linear in it, and `of` the scalar of the constant one.
+    pub(super) scale: f64,
+    pub(super) factor: Factor,
+    /// Number of scalars of S.
+    pub(super) base: usize,
+    pub(super) of: [&'a D; 2],
+    /// S_c and S_cc; zero where nobody asks for derivatives by parameters alone.
+    pub(super) values: [f64; 2],
 }
 
-impl<D: Derivatives> Derivatives for Times<'_, D> {
+impl<D: Derivatives> Derivatives for OfConstant<'_, D> {
     const HAS_SECOND: bool = D::HAS_SECOND;
 
+    #[inline]
     fn force(&self, i: usize) -> Vector {
-        self.of.force(i) * self.factor.value
+        self.of[0].force(i) * self.scale
     }
 
+    #[inline]
     fn row(&self, s: usize) -> f64 {
         match s.checked_sub(self.base) {
-            None => self.of.row(s) * self.factor.value,
-            Some(place) => self.factor.slopes[place] * self.value,
+            None => self.of[0].row(s) * self.scale,
+            Some(place) => self.factor.slopes[place] * self.values[0],
         }
     }
 
+    #[inline]
     fn block(&self, i: usize, j: usize) -> Matrix {
-        self.of.block(i, j) * self.factor.value
+        self.of[0].block(i, j) * self.scale
     }
 
+    #[inline]
     fn column(&self, i: usize, s: usize) -> Vector {
         match s.checked_sub(self.base) {
-            None => self.of.column(i, s) * self.factor.value,
-            Some(place) => self.of.force(i) * self.factor.slopes[place],
+            None => self.of[0].column(i, s) * self.scale,
+            Some(place) => self.of[1].force(i) * self.factor.slopes[place],
         }
     }
 
+    #[inline]
     fn entry(&self, s: usize, t: usize) -> f64 {
-        let Factor {
-            value,
-            slopes,
-            curvatures,
-        } = &self.factor;
+        let (slopes, of) = (&self.factor.slopes, &self.of);
         match (s.checked_sub(self.base), t.checked_sub(self.base)) {
-            (None, None) => self.of.entry(s, t) * value,
-            (Some(place), None) => self.of.row(t) * slopes[place],
-            (None, Some(place)) => self.of.row(s) * slopes[place],
-            (Some(one), Some(other)) => curvatures[one][other] * self.value,
+            (None, None) => of[0].entry(s, t) * self.scale,
+            (Some(place), None) => of[1].row(t) * slopes[place],
+            (None, Some(place)) => of[1].row(s) * slopes[place],
+            (Some(a), Some(b)) => {
+                slopes[a] * slopes[b] * self.values[1]
+                    + self.factor.curvatures[a][b] * self.values[0]
+            }
         }
     }
 }
@@ -124,12 +139,13 @@ struct WithFactor<'a, K: Kernel, S> {
 
 impl<K: Kernel, S> WithFactor<'_, K, S> {
     /// Derivatives of c E from those of E, or of a contraction with its value.
-    fn times<'d, D>(&self, of: &'d D, value: f64) -> Times<'d, D> {
-        Times {
+    fn times<'d, D>(&self, of: &'d D, value: f64) -> OfConstant<'d, D> {
+        OfConstant {
+            scale: self.factor.value,
             factor: self.factor,
             base: self.element.of.scalars(),
-            of,
-            value,
+            of: [of; 2],
+            values: [value, 0.0],
         }
     }
 
@@ -194,7 +210,7 @@ impl<K: Kernel> Kernel for ScaledElement<K> {
     }
 
     fn scalars(&self) -> usize {
-        self.of.scalars() + self.parameters.len()
+        self.of.scalars() + self.factor.parameters.len()
     }
 
     fn vector(&self, i: usize) -> VectorArg {
@@ -204,16 +220,16 @@ impl<K: Kernel> Kernel for ScaledElement<K> {
     fn scalar(&self, s: usize) -> Option<(usize, f64)> {
         match s.checked_sub(self.of.scalars()) {
             None => self.of.scalar(s),
-            Some(place) => Some((self.parameters[place], 1.0)),
+            Some(place) => Some((self.factor.parameters[place], 1.0)),
         }
     }
 
     fn energy(&self, sample: &Sample<'_>) -> f64 {
-        self.value(sample) * self.of.energy(sample)
+        self.factor.value(sample) * self.of.energy(sample)
     }
 
     fn first_part(&self, sample: &Sample<'_>) -> f64 {
-        self.value(sample) * self.of.first_part(sample)
+        self.factor.value(sample) * self.of.first_part(sample)
     }
 
     fn prepare(&self, order: Order, sample: &Sample<'_>, storage: &mut Self::Storage) {
@@ -229,7 +245,7 @@ impl<K: Kernel> Kernel for ScaledElement<K> {
     ) {
         let mut with_factor = WithFactor::<K, S> {
             element: self,
-            factor: self.factor(sample),
+            factor: self.factor.factor(sample),
             sample,
             to,
         };

@@ -5,8 +5,8 @@
 //! derive by it.
 
 use crate::element::{
-    BranchLocal, ElementGeometry, MaxwellSpring, Viscosity, ViscousContraction, ViscousLocal,
-    ViscousStrains,
+    BranchLocal, ElementEnergy, ElementGeometry, MaxwellSpring, NodeState, Viscosity,
+    ViscousContraction, ViscousLocal, ViscousStrains,
 };
 use crate::functional::finite_elements::{Variations, middle};
 use crate::functional::{Kernel, Order, Sample, Scatter, Stencil, VectorArg};
@@ -261,27 +261,17 @@ impl<const NODES: usize> Kernel for MaxwellElement<NODES> {
     fn energy(&self, sample: &Sample<'_>) -> f64 {
         let x = middle(sample.vectors, &self.nodes);
         let strains = self.strains(sample.vectors);
-        self.law.energy(&self.shape, &x, &strains)
+        self.law.energy(&NodeState::new(&self.shape, &x, &strains))
     }
 
-    fn prepare(
-        &self,
-        order: Order,
-        sample: &Sample<'_>,
-        Variations { plain, along }: &mut Variations<BranchLocal<NODES>>,
-    ) {
-        let Self { shape, law, .. } = self;
+    fn prepare(&self, order: Order, sample: &Sample<'_>, to: &mut Self::Storage) {
         let x = middle(sample.vectors, &self.nodes);
         let strains = self.strains(sample.vectors);
-        match order {
-            Order::Gradient => law.gradient(shape, &x, &strains, plain),
-            Order::Hessian => law.tangent(shape, &x, &strains, plain),
-            Order::Third => {
-                let w = middle(sample.along, &self.nodes);
-                let rates = self.strains(sample.along);
-                law.third(shape, [&x, &w], [&strains, &rates], plain, along);
-            }
-        }
+        let at = NodeState::new(&self.shape, &x, &strains);
+        to.fill(order, &self.law, at, || {
+            let w = middle(sample.along, &self.nodes);
+            (w, self.strains(sample.along))
+        });
     }
 
     #[inline(always)]

@@ -9,7 +9,8 @@ use crate::common::random::Random;
 use crate::naive_hexahedron::{Naive, SIGNS, cube, gauss, state};
 use num_dual::{Dual, Dual64, HyperDual};
 use proboscis::element::{
-    Dielectric, Elastomer, ElementGeometry, Field, Local, Passive, Viscosity, Volume,
+    Dielectric, Elastomer, ElementEnergy, ElementGeometry, Field, Local, NodeState, Passive,
+    Viscosity, Volume,
 };
 use proboscis::energy::NeoHooke;
 use proboscis::math::{Matrix, Vector};
@@ -170,10 +171,11 @@ fn all_derivatives<F: Field>(
             let (phi, w_phi) = (potentials(phi), potentials(w_phi));
             let name = format!("{volume:?} {n}");
             let mut local = Local::default();
-            law.tangent(&shape, &x, &phi, &mut local);
+            let at = NodeState::new(&shape, &x, &phi);
+            law.tangent(&at, &mut local);
             close_flat(&format!("{name} tangent"), &flat(&local), &plain);
             let mut gradient = Local::default();
-            law.gradient(&shape, &x, &phi, &mut gradient);
+            law.gradient(&at, &mut gradient);
             close(
                 &format!("{name} energy"),
                 &[gradient.energy],
@@ -184,10 +186,10 @@ fn all_derivatives<F: Field>(
                 &flat(&gradient).gradient,
                 &plain.gradient,
             );
-            let energy = law.energy(&shape, &x, &phi);
+            let energy = law.energy(&at);
             close(&format!("{name} energy"), &[energy], &[plain.value]);
             let mut rate = Local::default();
-            law.third(&shape, &x, &phi, &w, &w_phi, &mut local, &mut rate);
+            law.third(&at.along(&w, &w_phi), &mut local, &mut rate);
             close_flat(&format!("{name} third, plain"), &flat(&local), &plain);
             close_flat(&format!("{name} third, along"), &flat(&rate), &along);
         }
@@ -218,7 +220,7 @@ pub(crate) fn forces<F: Field>(
     phi: &F::Potentials<8>,
 ) -> Local<F> {
     let mut local = Local::default();
-    law.gradient(shape, x, phi, &mut local);
+    law.gradient(&NodeState::new(shape, x, phi), &mut local);
     local
 }
 
@@ -278,7 +280,12 @@ fn rotations_cost_no_energy() {
         let turned = |x: &[Vector; 8]| x.map(|x| rotation * x + shift);
 
         let passive = law(volume, Passive);
-        assert!(passive.energy(&shape, &turned(&nodes), &()).abs() < 1e-13);
+        assert!(
+            passive
+                .energy(&NodeState::new(&shape, &turned(&nodes), &()))
+                .abs()
+                < 1e-13
+        );
         let free = forces(&passive, &shape, &turned(&nodes), &());
         assert!(largest(&list(&free.forces)) < 1e-13);
 
@@ -319,7 +326,8 @@ fn both_volumes_agree_on_homogeneous_deformations() {
     // A state that is not homogeneous tells them apart.
     let (nodes, x, _) = state(&mut random);
     let shape = ElementGeometry::new(&nodes).unwrap();
-    let [a, b] = [Volume::Pointwise, Volume::Mean].map(|v| law(v, Passive).energy(&shape, &x, &()));
+    let [a, b] = [Volume::Pointwise, Volume::Mean]
+        .map(|v| law(v, Passive).energy(&NodeState::new(&shape, &x, &())));
     assert!((a - b).abs() > 1e-4);
 }
 
@@ -336,7 +344,8 @@ fn an_inverted_state_is_nan_everywhere() {
         for volume in [Volume::Pointwise, Volume::Mean] {
             let law = law(volume, DIELECTRIC);
             let mut local = Local::default();
-            law.tangent(&shape, &x, &[0.3; 8], &mut local);
+            let at = NodeState::new(&shape, &x, &[0.3; 8]);
+            law.tangent(&at, &mut local);
             let Flat {
                 value,
                 gradient,
@@ -348,7 +357,7 @@ fn an_inverted_state_is_nan_everywhere() {
                 "{volume:?} {gradient:?}"
             );
             assert!(hessian.concat().iter().all(|v| v.is_nan()), "{volume:?}");
-            assert!(law.energy(&shape, &x, &[0.3; 8]).is_nan());
+            assert!(law.energy(&at).is_nan());
             let mut forces = [Vector::zeros(); 8];
             Viscosity { viscosity: 1.0 }.forces(&shape, &x, &nodes, &mut forces);
             assert!(list(&forces).iter().all(|v| v.is_nan()));

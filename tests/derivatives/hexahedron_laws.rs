@@ -7,7 +7,8 @@ use crate::naive_hexahedron::{
 };
 use num_dual::{Dual64, DualNum};
 use proboscis::element::{
-    Dielectric, ElementGeometry, Field, IsochoricLaw, Local, Passive, Volume,
+    Dielectric, ElementEnergy, ElementGeometry, Field, IsochoricLaw, Local, NodeState, Passive,
+    Volume,
 };
 use proboscis::math::{Matrix, Vector};
 
@@ -69,18 +70,19 @@ fn all_derivatives<F: Field>(
             });
             let (phi, w_phi) = (potentials(phi), potentials(w_phi));
             let name = format!("{isochoric_law:?} {volume:?} {n}");
-            let energy = law.energy(&shape, &x, &phi);
+            let at = NodeState::new(&shape, &x, &phi);
+            let energy = law.energy(&at);
             close(&format!("{name} energy"), &[energy], &[plain.value]);
             let (mut local, mut rate) = (Local::default(), Local::default());
-            law.gradient(&shape, &x, &phi, &mut local);
+            law.gradient(&at, &mut local);
             close(
                 &format!("{name} gradient"),
                 &flat(&local).gradient,
                 &plain.gradient,
             );
-            law.tangent(&shape, &x, &phi, &mut local);
+            law.tangent(&at, &mut local);
             close_flat(&format!("{name} tangent"), &flat(&local), &plain);
-            law.third(&shape, &x, &phi, &w, &w_phi, &mut local, &mut rate);
+            law.third(&at.along(&w, &w_phi), &mut local, &mut rate);
             close_flat(&format!("{name} third, along"), &flat(&rate), &along);
         }
     }
@@ -119,10 +121,12 @@ fn moduli_of_small_strains_are_those_of_the_neo_hookean_element() {
     for volume in VOLUMES {
         let neo_hooke = law(volume, Passive);
         let (mut expected, mut local) = (Local::default(), Local::default());
-        neo_hooke.tangent(&shape, &cube(), &(), &mut expected);
+        let x = cube();
+        let at = NodeState::new(&shape, &x, &());
+        neo_hooke.tangent(&at, &mut expected);
         for isochoric in LAWS {
             let law = neo_hooke.by(isochoric);
-            law.tangent(&shape, &cube(), &(), &mut local);
+            law.tangent(&at, &mut local);
             let name = format!("{isochoric:?} {volume:?}");
             let is_small = |f: &f64| f.abs() < 1e-14;
             assert!(list(&local.forces).iter().all(is_small), "{name}");
@@ -204,7 +208,7 @@ fn gents_limit_leaves_an_element_no_energy() {
     for (stretch, exists) in [(1.5, true), (2.5, false)] {
         let x = cube().map(|x| x.component_mul(&Vector::new(stretch, 1.0, 1.0 / stretch)));
         let mut local = Local::default();
-        law.tangent(&shape, &x, &(), &mut local);
+        law.tangent(&NodeState::new(&shape, &x, &()), &mut local);
         let all = flat(&local);
         assert_eq!(all.value.is_finite(), exists);
         assert_eq!(all.gradient.iter().any(|f| f.is_finite()), exists);

@@ -11,7 +11,9 @@ use crate::naive_hexahedron::{
     contracted, deformation, determinant, gauss, inverse_strain, product, state, transposed,
 };
 use num_dual::DualNum;
-use proboscis::element::{BranchLocal, ElementGeometry, MaxwellSpring, ViscousStrains, relaxed};
+use proboscis::element::{
+    BranchLocal, ElementEnergy, ElementGeometry, MaxwellSpring, NodeState, ViscousStrains, relaxed,
+};
 use proboscis::math::{Matrix, Vector};
 
 const MODULUS: f64 = 1.3;
@@ -98,13 +100,14 @@ fn derivatives_of_the_spring_of_a_branch() {
         );
         let (plain, along) = oracle(&p, &d, |p| energy(&points, p));
         let [q, w_q] = [q, w_q].map(|q| strains(&q, &order));
-        close("energy", &[law.energy(&shape, &x, &q)], &[plain.value]);
+        let at = NodeState::new(&shape, &x, &q);
+        close("energy", &[law.energy(&at)], &[plain.value]);
         let (mut local, mut rate) = (BranchLocal::default(), BranchLocal::default());
-        law.gradient(&shape, &x, &q, &mut local);
+        law.gradient(&at, &mut local);
         close("gradient", &flat(&local, &order).gradient, &plain.gradient);
-        law.tangent(&shape, &x, &q, &mut local);
+        law.tangent(&at, &mut local);
         close_flat("tangent", &flat(&local, &order), &plain);
-        law.third(&shape, [&x, &w], [&q, &w_q], &mut local, &mut rate);
+        law.third(&at.along(&w, &w_q), &mut local, &mut rate);
         close_flat("third, plain", &flat(&local, &order), &plain);
         close_flat("third, along", &flat(&rate, &order), &along);
     }

@@ -4,7 +4,9 @@ use crate::common::random::Random;
 use crate::hexahedron::{DIELECTRIC, close, forces, largest, law, list};
 use crate::naive_hexahedron::{Naive, cube, gauss};
 use num_dual::Dual64;
-use proboscis::element::{Dielectric, Elastomer, ElementGeometry, Local, Viscosity, Volume};
+use proboscis::element::{
+    Dielectric, Elastomer, ElementEnergy, ElementGeometry, Local, NodeState, Viscosity, Volume,
+};
 use proboscis::energy::NeoHooke;
 use proboscis::math::{Matrix, Vector};
 
@@ -170,7 +172,7 @@ fn a_free_block_contracts_in_its_field() {
             let mut x = nodes;
             let mut local = Local::default();
             for _ in 0..20 {
-                law.tangent(&shape, &x, &phi, &mut local);
+                law.tangent(&NodeState::new(&shape, &x, &phi), &mut local);
                 let residual = nalgebra::DVector::from_fn(free.len(), |r, _| {
                     local.forces[free[r].0][free[r].1]
                 });

@@ -1,7 +1,8 @@
 //! An elastic block in the model: vectors and potentials of its nodes, laws of its elements, charges of its electrodes.
 
 use crate::element::{
-    Dielectric, Elastomer, ElementGeometry, Fields, IsochoricLaw, Local, Passive, Volume,
+    Dielectric, Elastomer, ElementEnergy, ElementGeometry, Fields, IsochoricLaw, Local, NodeState,
+    Passive, Volume,
 };
 use crate::energy::NeoHooke;
 use crate::functional::ScalarArg;
@@ -205,7 +206,7 @@ impl SolidBlock {
             if self.is_dielectric[e] {
                 let (at, phi) = (nodes.map(|n| places[n]), nodes.map(|n| potentials[n]));
                 let law = self.dielectric(e);
-                law.gradient(&self.shapes[e], &at, &phi, &mut local);
+                law.gradient(&NodeState::new(&self.shapes[e], &at, &phi), &mut local);
                 for (&node, charge) in nodes.iter().zip(&local.electric.charges) {
                     charges[node] -= charge;
                 }

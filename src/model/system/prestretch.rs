@@ -5,7 +5,8 @@
 //! is U. A muscle is stretched along its span and free of stress across.
 
 use crate::element::{
-    Elastomer, ElementGeometry, ElementLaw, IsochoricLaw, Local, Passive, Volume,
+    Elastomer, ElementEnergy, ElementGeometry, ElementLaw, IsochoricLaw, Local, NodeState, Passive,
+    Volume,
 };
 use crate::energy::{ElasticLaw, NeoHooke};
 use crate::math::{Fault, Key, Vector, refuse};
@@ -85,7 +86,7 @@ fn free_across<L: ElementLaw>(material: &Material, law: L, along: f64) -> f64 {
     let mut is_below = |across: f64| {
         let stretch = Vector::new(across, across, along);
         let x = corners.map(|corner| corner.component_mul(&stretch));
-        elastomer.gradient(&shape, &x, &(), &mut local);
+        elastomer.gradient(&NodeState::new(&shape, &x, &()), &mut local);
         let pairs = corners.iter().zip(&local.forces);
         let slope: f64 = pairs
             .map(|(corner, force)| corner.xy().dot(&force.xy()))

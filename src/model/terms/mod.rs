@@ -11,7 +11,7 @@ pub(super) mod parametric_elements;
 
 use crate::energy::{Coefficient, Gravity, Law};
 use crate::functional::{
-    Group, Inertia, Kernel, LawElement, Mass, ScaledElement, Stencil, Term, VectorArg,
+    FreeConstant, Group, Inertia, Kernel, LawElement, Mass, ScaledElement, Stencil, Term, VectorArg,
 };
 use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::math::Vector;
@@ -88,13 +88,11 @@ impl Call<'_> {
         read: Read,
         terms: &mut Terms<'_>,
     ) {
-        let parameters = read.scalars();
-        let element = ScaledElement {
-            of,
-            factor,
-            parameters,
+        let factor = FreeConstant {
+            of: factor,
+            parameters: read.scalars(),
         };
-        self.add(element, terms);
+        self.add(ScaledElement { of, factor }, terms);
     }
 
     /// Adds an element as it is given, or where parameters are read that of the constant one times the constant.

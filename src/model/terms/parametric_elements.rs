@@ -3,7 +3,7 @@
 
 use crate::element::{ElementLaw, IsochoricLaw};
 use crate::energy::{Coefficient, NeoHooke};
-use crate::functional::{FiniteElement, Kernel, VariedElement};
+use crate::functional::{FiniteElement, FreeConstant, Kernel, VariedElement};
 use crate::model::constants::constant::MaterialConstant;
 use crate::model::constants::free_parameters::Read;
 use crate::model::layout::solid_block::SolidBlock;
@@ -132,9 +132,13 @@ impl ElementOf<'_> {
             Some(law @ IsochoricLaw::Gent { limit }) => {
                 let factor = self.product(&[modulus], terms);
                 let (limit, read) = self.product(&[(OF_LAWS[0], limit)], terms);
-                match read.scalars().first() {
-                    Some(&parameter) => self.add_varied(law, limit, parameter, factor, terms),
-                    None => self.add(law, unit, Some(factor), terms),
+                let limit = FreeConstant {
+                    of: limit,
+                    parameters: read.scalars(),
+                };
+                match limit.parameters.is_empty() {
+                    true => self.add(law, unit, Some(factor), terms),
+                    false => self.add_varied(law, limit, factor, terms),
                 }
             }
             Some(IsochoricLaw::GentSlope { .. } | IsochoricLaw::GentCurvature { .. }) => {
@@ -147,8 +151,7 @@ impl ElementOf<'_> {
     fn add_varied(
         self,
         law: IsochoricLaw,
-        limit: Coefficient,
-        parameter: usize,
+        limit: FreeConstant,
         factor: Factor,
         terms: &mut Terms<'_>,
     ) {
@@ -160,7 +163,6 @@ impl ElementOf<'_> {
             law,
             nodes: block.nodes(number),
             limit,
-            parameter,
         };
         let (factor, read) = factor;
         self.call().add_scaled(element, factor, read, terms);
