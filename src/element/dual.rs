@@ -10,6 +10,13 @@ pub(super) struct Dual<T> {
     pub(super) rate: T,
 }
 
+impl<T> Dual<T> {
+    #[inline(always)]
+    pub(super) const fn new(value: T, rate: T) -> Self {
+        Self { value, rate }
+    }
+}
+
 /// Numbers with their rates, taken apart.
 pub(super) trait Rated: Copy {
     /// The same list of plain numbers.
@@ -63,10 +70,7 @@ impl<T: Real> Add for Dual<T> {
 
     #[inline(always)]
     fn add(self, b: Self) -> Self {
-        Self {
-            value: self.value + b.value,
-            rate: self.rate + b.rate,
-        }
+        Self::new(self.value + b.value, self.rate + b.rate)
     }
 }
 
@@ -75,10 +79,7 @@ impl<T: Real> Sub for Dual<T> {
 
     #[inline(always)]
     fn sub(self, b: Self) -> Self {
-        Self {
-            value: self.value - b.value,
-            rate: self.rate - b.rate,
-        }
+        Self::new(self.value - b.value, self.rate - b.rate)
     }
 }
 
@@ -87,10 +88,10 @@ impl<T: Real> Mul for Dual<T> {
 
     #[inline(always)]
     fn mul(self, b: Self) -> Self {
-        Self {
-            value: self.value * b.value,
-            rate: (self.value * b.rate).plus_product(self.rate, b.value),
-        }
+        Self::new(
+            self.value * b.value,
+            (self.value * b.rate).plus_product(self.rate, b.value),
+        )
     }
 }
 
@@ -99,76 +100,56 @@ impl<T: Real> Neg for Dual<T> {
 
     #[inline(always)]
     fn neg(self) -> Self {
-        Self {
-            value: -self.value,
-            rate: -self.rate,
-        }
+        Self::new(-self.value, -self.rate)
     }
 }
 
 impl<T: Real> Real for Dual<T> {
     #[inline(always)]
     fn plus_product(self, a: Self, b: Self) -> Self {
-        Self {
-            value: self.value.plus_product(a.value, b.value),
-            rate: self
-                .rate
+        Self::new(
+            self.value.plus_product(a.value, b.value),
+            self.rate
                 .plus_product(a.value, b.rate)
                 .plus_product(a.rate, b.value),
-        }
+        )
     }
 
     #[inline(always)]
     fn minus_product(self, a: Self, b: Self) -> Self {
-        Self {
-            value: self.value.minus_product(a.value, b.value),
-            rate: self
-                .rate
+        Self::new(
+            self.value.minus_product(a.value, b.value),
+            self.rate
                 .minus_product(a.value, b.rate)
                 .minus_product(a.rate, b.value),
-        }
+        )
     }
 
     #[inline(always)]
     fn scaled(self, c: f64) -> Self {
-        Self {
-            value: self.value.scaled(c),
-            rate: self.rate.scaled(c),
-        }
+        Self::new(self.value.scaled(c), self.rate.scaled(c))
     }
 
     #[inline(always)]
     fn shifted(self, c: f64) -> Self {
-        Self {
-            value: self.value.shifted(c),
-            rate: self.rate,
-        }
+        Self::new(self.value.shifted(c), self.rate)
     }
 
     #[inline(always)]
     fn recip(self) -> Self {
         let value = self.value.recip();
-        Self {
-            value,
-            rate: -(self.rate * value * value),
-        }
+        Self::new(value, -(self.rate * value * value))
     }
 
     #[inline(always)]
     fn exp(self) -> Self {
         let value = self.value.exp();
-        Self {
-            value,
-            rate: self.rate * value,
-        }
+        Self::new(value, self.rate * value)
     }
 
     #[inline(always)]
     fn ln(self) -> Self {
-        Self {
-            value: self.value.ln(),
-            rate: self.rate * self.value.recip(),
-        }
+        Self::new(self.value.ln(), self.rate * self.value.recip())
     }
 }
 
@@ -179,18 +160,12 @@ impl<P: Points<Plain = P>> Points for Dual<P> {
 
     #[inline(always)]
     fn splat(token: Self::Token, value: Self::Uniform) -> Self {
-        Self {
-            value: P::splat(token, value.value),
-            rate: P::splat(token, value.rate),
-        }
+        Self::new(P::splat(token, value.value), P::splat(token, value.rate))
     }
 
     #[inline(always)]
     fn constant(token: Self::Token, value: f64) -> Self {
-        Self {
-            value: P::constant(token, value),
-            rate: P::constant(token, 0.0),
-        }
+        Self::new(P::constant(token, value), P::constant(token, 0.0))
     }
 
     #[inline(always)]
@@ -200,66 +175,45 @@ impl<P: Points<Plain = P>> Points for Dual<P> {
 
     #[inline(always)]
     fn uniform(value: f64, rate: f64) -> Self::Uniform {
-        Dual {
-            value: P::uniform(value, 0.0),
-            rate: P::uniform(rate, 0.0),
-        }
+        Dual::new(P::uniform(value, 0.0), P::uniform(rate, 0.0))
     }
 
     #[inline(always)]
     fn moving(token: Self::Token, values: &[f64; 8], rates: &[f64; 8]) -> Self {
-        Self {
-            value: P::load(token, values),
-            rate: P::load(token, rates),
-        }
+        Self::new(P::load(token, values), P::load(token, rates))
     }
 
     #[inline(always)]
     fn plus_plain(self, b: P) -> Self {
-        Self {
-            value: self.value + b,
-            rate: self.rate,
-        }
+        Self::new(self.value + b, self.rate)
     }
 
     #[inline(always)]
     fn times(self, b: P) -> Self {
-        Self {
-            value: self.value * b,
-            rate: self.rate * b,
-        }
+        Self::new(self.value * b, self.rate * b)
     }
 
     #[inline(always)]
     fn plus_times(self, a: Self, b: P) -> Self {
-        Self {
-            value: self.value.plus_product(a.value, b),
-            rate: self.rate.plus_product(a.rate, b),
-        }
+        Self::new(
+            self.value.plus_product(a.value, b),
+            self.rate.plus_product(a.rate, b),
+        )
     }
 
     #[inline(always)]
     fn positive(self) -> Self {
-        Self {
-            value: self.value.positive(),
-            rate: self.rate,
-        }
+        Self::new(self.value.positive(), self.rate)
     }
 
     #[inline(always)]
     fn sum(self) -> Self::Uniform {
-        Dual {
-            value: self.value.sum(),
-            rate: self.rate.sum(),
-        }
+        Dual::new(self.value.sum(), self.rate.sum())
     }
 
     #[inline(always)]
     fn each(self) -> [Self::Uniform; 8] {
         let (values, rates) = (self.value.each(), self.rate.each());
-        std::array::from_fn(|point| Dual {
-            value: values[point],
-            rate: rates[point],
-        })
+        std::array::from_fn(|point| Dual::new(values[point], rates[point]))
     }
 }

@@ -122,50 +122,29 @@ impl<O> Pair<'_, O> {
     }
 }
 
+/// Receives numbers and their rates alike.
+macro_rules! both {
+    ($($name:ident($($i:ident),*): $numbers:ty;)*) => {
+        $(
+            #[inline(always)]
+            fn $name(&mut self, $($i: usize,)* d: $numbers) {
+                self.both(d, |to, d| to.$name($($i,)* d));
+            }
+        )*
+    };
+}
+
 impl<O: Output<f64>> Output<Dual<f64>> for Pair<'_, O> {
-    #[inline(always)]
-    fn energy(&mut self, d: Dual<f64>) {
-        self.both(d, O::energy);
-    }
-
-    #[inline(always)]
-    fn force(&mut self, i: usize, d: [Dual<f64>; 3]) {
-        self.both(d, |to, d| to.force(i, d));
-    }
-
-    #[inline(always)]
-    fn stiffness(&mut self, i: usize, j: usize, d: [[Dual<f64>; 3]; 3]) {
-        self.both(d, |to, d| to.stiffness(i, j, d));
-    }
-
-    #[inline(always)]
-    fn charge(&mut self, i: usize, d: Dual<f64>) {
-        self.both(d, |to, d| to.charge(i, d));
-    }
-
-    #[inline(always)]
-    fn coupling(&mut self, i: usize, j: usize, d: [Dual<f64>; 3]) {
-        self.both(d, |to, d| to.coupling(i, j, d));
-    }
-
-    #[inline(always)]
-    fn permittivity(&mut self, i: usize, j: usize, d: Dual<f64>) {
-        self.both(d, |to, d| to.permittivity(i, j, d));
-    }
-
-    #[inline(always)]
-    fn strain(&mut self, m: usize, d: [Dual<f64>; 8]) {
-        self.both(d, |to, d| to.strain(m, d));
-    }
-
-    #[inline(always)]
-    fn strain_coupling(&mut self, i: usize, m: usize, d: [[Dual<f64>; 8]; 3]) {
-        self.both(d, |to, d| to.strain_coupling(i, m, d));
-    }
-
-    #[inline(always)]
-    fn strains(&mut self, m: usize, n: usize, d: [Dual<f64>; 8]) {
-        self.both(d, |to, d| to.strains(m, n, d));
+    both! {
+        energy(): Dual<f64>;
+        force(i): [Dual<f64>; 3];
+        stiffness(i, j): [[Dual<f64>; 3]; 3];
+        charge(i): Dual<f64>;
+        coupling(i, j): [Dual<f64>; 3];
+        permittivity(i, j): Dual<f64>;
+        strain(m): [Dual<f64>; 8];
+        strain_coupling(i, m): [[Dual<f64>; 8]; 3];
+        strains(m, n): [Dual<f64>; 8];
     }
 }
 

@@ -2,13 +2,11 @@
 
 use pulp::Arch;
 
-use super::dense::Dense;
-use super::dense::padded;
+use super::dense::{Dense, padded};
 use super::eliminate::{Count, Eliminate, Workspace};
 use super::fronts::{Front, Fronts};
 use super::graph::Progress;
-use super::pivot::Inertia;
-use super::pivot::Rules;
+use super::pivot::{Inertia, Rules};
 use crate::math::Stopped;
 
 /// Rows of a leaf of one column that is eliminated without a front.

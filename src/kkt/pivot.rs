@@ -5,8 +5,7 @@
 //!
 //! Signs of the eigenvalues of a symmetric matrix.
 
-use super::dense::Dense;
-use super::dense::largest;
+use super::dense::{Dense, largest};
 use pulp::Simd;
 use std::ops::Range;
 

@@ -9,23 +9,18 @@ mod number;
 mod sets;
 mod signal;
 
-pub use derivatives::largest_eigenvalue_bound;
-pub use derivatives::{Derivatives, Gradient, Local};
+pub use derivatives::{Derivatives, Gradient, Local, largest_eigenvalue_bound};
 pub(crate) use fault::refuse;
 pub use fault::{
     DIRECTION, Fault, Key, WHOLE, no_smaller, not_negative, positive, shortest, significant, unique,
 };
 pub use jet::Jet;
 pub use join::cores;
-pub(crate) use join::has_pool;
-pub(crate) use join::join;
-pub(crate) use join::join_if;
+pub(crate) use join::{has_pool, join, join_if};
 pub use number::{Dual, HyperDual, Number};
-pub use sets::DisjointSets;
 pub(crate) use sets::compact_index;
-pub use sets::{IsOver, Stopped};
-pub use signal::Random;
-pub use signal::{Signal, in_order};
+pub use sets::{DisjointSets, IsOver, Stopped};
+pub use signal::{Random, Signal, in_order};
 
 /// A vector of space.
 pub type Vector = nalgebra::Vector3<f64>;

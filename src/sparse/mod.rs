@@ -13,9 +13,7 @@ pub(crate) mod mumps;
 mod pattern;
 
 pub use backend::{Backend, DENSE};
-pub use direct::Direct;
-pub use direct::MethodState;
+pub use direct::{Direct, MethodState};
 pub use dissection::Places;
-pub use factorisation::Precision;
-pub use factorisation::{Factorisation, Singular};
+pub use factorisation::{Factorisation, Precision, Singular};
 pub use pattern::Symmetry;

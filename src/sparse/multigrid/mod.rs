@@ -24,8 +24,7 @@ mod stiffness;
 mod triangles;
 mod volumes;
 
-pub use node_grid::ElementVolume;
-pub use node_grid::{GridNode, NodeBlock, NodeGrid};
+pub use node_grid::{ElementVolume, GridNode, NodeBlock, NodeGrid};
 pub use solver::{Multigrid, MultigridReport, NoSolution};
 pub use stiffness::LowestModes;
 pub use triangles::{BlockPlaces, NodeMesh};
