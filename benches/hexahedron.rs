@@ -60,7 +60,7 @@ fn variations<F: Field>(
                 black_box(&moving),
                 black_box(&mut local),
                 black_box(&mut along),
-            )
+            );
         });
     });
     group.finish();

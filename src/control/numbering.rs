@@ -134,7 +134,7 @@ impl Numbering {
     ) -> Self {
         let counts = [Time::Instant, Time::Interval].map(|time| variables.of(time).len());
         let [of_instant, of_interval] = counts;
-        let intervals = span.intervals;
+        let intervals = span.all;
         let mut out = Self {
             columns: Vec::new(),
             rows: Vec::new(),
@@ -264,7 +264,7 @@ pub struct Span {
     /// Intervals of the motion: the instant at which it ends.
     pub end: usize,
     /// All intervals: those of the motion and, where the inputs that hold its goal are sought, one at rest behind them.
-    pub intervals: usize,
+    pub all: usize,
     /// True if the last interval comes before the first one, of a periodic motion.
     pub is_closed: bool,
 }
@@ -275,13 +275,13 @@ impl Span {
     pub(super) fn twin(self) -> Option<usize> {
         match self.is_closed {
             true => Some(0),
-            false => (self.end < self.intervals).then_some(self.end),
+            false => (self.end < self.all).then_some(self.end),
         }
     }
 
     /// The interval before interval k: of the first one the last, where the motion is periodic.
     pub(super) fn before(self, k: usize) -> Option<usize> {
-        let last = self.is_closed.then(|| self.intervals - 1);
+        let last = self.is_closed.then(|| self.all - 1);
         k.checked_sub(1).or(last)
     }
 }

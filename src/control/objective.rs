@@ -49,7 +49,7 @@ impl Cost {
 
     /// Returns true if neighbouring intervals couple.
     pub fn couples_intervals(&self) -> bool {
-        self.rate != 0.0 && self.span.intervals > 1
+        self.rate != 0.0 && self.span.all > 1
     }
 
     /// Returns true if voltages enter by their squares alone.
@@ -64,7 +64,7 @@ impl Cost {
             None => self.ends[0].as_ref().map(|e| e[s]),
             Some(before) => Some(at(before)),
         };
-        let after = if k == self.span.intervals {
+        let after = if k == self.span.all {
             self.ends[1].as_ref().map(|e| e[s])
         } else {
             Some(at(k))
@@ -74,7 +74,7 @@ impl Cost {
 
     fn squares(&self, v: &[f64]) -> (f64, f64) {
         let effort = v.iter().map(|x| x * x).sum();
-        let jumps = (0..=self.span.intervals).flat_map(|k| (0..self.scalars).map(move |s| (k, s)));
+        let jumps = (0..=self.span.all).flat_map(|k| (0..self.scalars).map(move |s| (k, s)));
         let rate = jumps
             .filter_map(|(k, s)| self.jump(v, k, s))
             .map(|j| j * j)
@@ -107,7 +107,7 @@ impl Cost {
         if self.rate == 0.0 {
             return;
         }
-        for k in 0..=self.span.intervals {
+        for k in 0..=self.span.all {
             for s in 0..self.scalars {
                 let Some(jump) = self.jump(v, k, s) else {
                     continue;
@@ -116,7 +116,7 @@ impl Cost {
                 if let Some(before) = self.span.before(k) {
                     out[before * self.scalars + s] -= slope;
                 }
-                if k < self.span.intervals {
+                if k < self.span.all {
                     out[k * self.scalars + s] += slope;
                 }
             }
@@ -126,7 +126,7 @@ impl Cost {
     /// ∂²f/∂v² of one voltage of interval k with itself.
     pub fn curvature(&self, k: usize, tau: f64) -> f64 {
         let before = self.span.before(k).is_some() || self.ends[0].is_some();
-        let after = k + 1 < self.span.intervals || self.span.is_closed || self.ends[1].is_some();
+        let after = k + 1 < self.span.all || self.span.is_closed || self.ends[1].is_some();
         let jumps = f64::from(u8::from(before) + u8::from(after));
         2.0 * self.effort * tau + 2.0 * self.rate / tau * jumps
     }

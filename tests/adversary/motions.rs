@@ -71,7 +71,7 @@ fn exact(model: &Model, signals: &[Signal], times: &[f64], parts: usize) -> Disc
     let drive = Signals { model, signals };
     let begun = DiscreteTrajectory::at(&start);
     let lengths = Lengths::Between(&all);
-    let (motion, failure) = go_on(solving, model, begun, lengths, drive, |_| {
+    let (motion, failure) = go_on(solving, model, begun, lengths, &drive, |_| {
         ControlFlow::Continue(())
     });
     assert_eq!(failure, None);

@@ -144,7 +144,7 @@ fn a_stop_between_grids_keeps_the_result_so_far() {
     let optimum = &found.optima[0];
     assert!(optimum.solution.status.is_solved());
     assert_eq!(optimum.motion.intervals(), control.intervals);
-    let note = found.notes[0].as_ref();
+    let note = optimum.refined.as_ref();
     let note = note.expect("the accuracy is not reached");
     assert!(note.ends_with("it was stopped"), "{note}");
 }

@@ -39,7 +39,7 @@ fn exact(model: &Model, task: &Simulation, times: &[f64]) -> DiscreteTrajectory 
     let start = resolve_start(model, &task.start).unwrap();
     let (begun, lengths) = (DiscreteTrajectory::at(&start), Lengths::Between(&all));
     let go = |_: &DiscreteTrajectory| ControlFlow::Continue(());
-    let (motion, failure) = go_on(solving, model, begun, lengths, Inputs(model, task), go);
+    let (motion, failure) = go_on(solving, model, begun, lengths, &Inputs(model, task), go);
     assert_eq!(failure, None);
     motion
 }

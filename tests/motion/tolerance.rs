@@ -29,9 +29,14 @@ fn steps_by_a_tolerance_keep_it() {
         };
         let begun = DiscreteTrajectory::at(&start);
         let lengths = Lengths::Controlled(control);
-        go_on(Solving::default(), &model, begun, lengths, voltages, |_| {
-            ControlFlow::Continue(())
-        })
+        go_on(
+            Solving::default(),
+            &model,
+            begun,
+            lengths,
+            &voltages,
+            |_| ControlFlow::Continue(()),
+        )
     };
     let go_on = |_: &_| ControlFlow::Continue(());
     let (exact, _) = simulate_by(

@@ -101,7 +101,7 @@ fn a_resumed_motion_has_the_same_bits_on_any_number_of_threads() {
         let observer = |_: &_| ControlFlow::Continue(());
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
         let (discrete, failure) = (pool.build().unwrap())
-            .install(|| go_on(MULTIGRID, &model, begun, lengths, drive, observer));
+            .install(|| go_on(MULTIGRID, &model, begun, lengths, &drive, observer));
         assert_eq!(failure, None);
         discrete
     };

@@ -164,7 +164,7 @@ fn a_resumed_motion_has_the_same_bits() {
         let lengths = Lengths::Equal(TimeGrid { h: 0.5, steps });
         let drive = |_: f64, _: f64| vec![3e5];
         let observer = |_: &_| ControlFlow::Continue(());
-        let (discrete, failure) = go_on(MULTIGRID, &model, begun, lengths, drive, observer);
+        let (discrete, failure) = go_on(MULTIGRID, &model, begun, lengths, &drive, observer);
         assert_eq!(failure, None);
         discrete
     };

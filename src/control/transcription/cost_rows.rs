@@ -424,7 +424,7 @@ impl Objective {
                 boundary.limits.quantities().len(),
                 layout.span.end,
             ),
-            energies: energy_rows(model, energies, &boundary.rest, layout.span.intervals),
+            energies: energy_rows(model, energies, &boundary.rest, layout.span.all),
             inputs,
             scale: 1.0,
         }

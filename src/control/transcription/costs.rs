@@ -72,7 +72,7 @@ impl Transcription<'_> {
     pub(super) fn gather_cost_gradient(&mut self, grad: &mut [f64]) {
         let (stride, coordinates) = (self.stride(), self.model.action.map.unknowns());
         if let Some(of) = self.layout.span.twin() {
-            let last = self.layout.span.intervals * stride;
+            let last = self.layout.span.all * stride;
             let (before, twin) = self.workspace.rows.split_at_mut(last);
             let sums = before[of * stride..][..coordinates].iter_mut();
             sums.zip(twin).for_each(|(sum, row)| *sum += *row);
@@ -84,9 +84,9 @@ impl Transcription<'_> {
             let row = match *column {
                 Column::Instant { k, i } => self.workspace.rows[k * stride + i],
                 Column::Interval { k, s } => of_interval(k, s),
-                Column::Parameter { s } => (0..self.layout.span.intervals)
-                    .map(|k| of_interval(k, s))
-                    .sum(),
+                Column::Parameter { s } => {
+                    (0..self.layout.span.all).map(|k| of_interval(k, s)).sum()
+                }
                 Column::Horizon => continue,
             };
             *sum += row * scale;
@@ -104,18 +104,18 @@ impl Transcription<'_> {
         );
         let pattern = self.model.action.layout();
         let (stride, coordinates) = (self.stride(), self.model.action.map.unknowns());
-        for k in 0..=self.layout.span.intervals {
+        for k in 0..=self.layout.span.all {
             let rows = &self.workspace.rows[k * stride..][..coordinates];
             let values = &mut self.workspace.values[pattern.horizon_at(k)..][..coordinates];
             values.iter_mut().zip(rows).for_each(|(v, row)| *v += row);
-            if k == self.layout.span.intervals {
+            if k == self.layout.span.all {
                 break;
             }
             let rows = &self.workspace.rows[k * stride + coordinates..(k + 1) * stride];
             let values = &mut self.workspace.values[pattern.horizon_scalars_at(k)..][..rows.len()];
             values.iter_mut().zip(rows).for_each(|(v, row)| *v += row);
         }
-        self.workspace.values[pattern.horizon_square_at(self.layout.span.intervals)] += square;
+        self.workspace.values[pattern.horizon_square_at(self.layout.span.all)] += square;
     }
 
     /// Places all instants at the present point as far as it is needed, the copy where stretches meet too.
@@ -154,7 +154,7 @@ impl Transcription<'_> {
         let count = self.model.action.layout().interval_scalars;
         let mut sum = 0.0;
         for row in &self.objective.energies {
-            for k in 0..=self.layout.span.intervals {
+            for k in 0..=self.layout.span.all {
                 let factor = row.factor(k, &self.workspace.scalars, count).value;
                 sum += factor * self.capacitance(row, k);
             }
@@ -170,12 +170,12 @@ impl Transcription<'_> {
         let count = pattern.interval_scalars;
         let mut forces = std::mem::take(&mut self.workspace.measured.forces);
         for index in 0..self.objective.energies.len() {
-            for k in 0..=self.layout.span.intervals {
+            for k in 0..=self.layout.span.all {
                 let row = &self.objective.energies[index];
                 let factor = row.factor(k, &self.workspace.scalars, count);
                 let capacitance = self.capacitance(row, k);
                 for (side, slope) in factor.slopes.into_iter().enumerate() {
-                    if let Some(interval) = interval(k, side, self.layout.span.intervals) {
+                    if let Some(interval) = interval(k, side, self.layout.span.all) {
                         let at = interval * stride + coordinates + row.scalar;
                         self.workspace.rows[at] += capacitance * slope;
                     }
@@ -216,14 +216,14 @@ impl Transcription<'_> {
         let mut forces = std::mem::take(&mut self.workspace.measured.forces);
         self.workspace.rows[..pattern.unknowns].fill(0.0);
         for index in 0..self.objective.energies.len() {
-            for k in 0..=self.layout.span.intervals {
+            for k in 0..=self.layout.span.all {
                 // The gradient of the capacitance, in the storage of one instant's rows.
                 self.add_slope(index, k, sigma, 0, &mut forces);
                 let row = &self.objective.energies[index];
                 let factor = row.factor(k, &self.workspace.scalars, count);
                 let capacitance = sigma * self.capacitance(row, k);
                 for side in 0..2 {
-                    let Some(interval) = interval(k, side, self.layout.span.intervals) else {
+                    let Some(interval) = interval(k, side, self.layout.span.all) else {
                         continue;
                     };
                     self.workspace.values[pattern.scalars_at(interval) + row.square] +=

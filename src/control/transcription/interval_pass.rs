@@ -127,7 +127,7 @@ impl<'m> Transcription<'m> {
             workspace,
             ..
         } = self;
-        let (action, last) = (&model.action, layout.span.intervals);
+        let (action, last) = (&model.action, layout.span.all);
         let stride = stride(action);
         let (rows, costates) = workspace.rows.split_at_mut((last + 1) * stride);
         let limit = stop::limit();
@@ -204,7 +204,7 @@ impl Transcription<'_> {
     pub(super) fn objective_curvature(&mut self, sigma: f64) {
         let pattern = self.model.action.layout();
         let tau = self.workspace.h * MILLISECOND;
-        for k in 0..self.layout.span.intervals {
+        for k in 0..self.layout.span.all {
             let curvature = sigma * self.objective.cost.curvature(k, tau);
             for input in &self.objective.inputs {
                 self.workspace.values[pattern.scalars_at(k) + input.slot] +=
@@ -218,14 +218,14 @@ impl Transcription<'_> {
                 &mut self.workspace.gradient,
             );
             let mut gradient = self.workspace.gradient.iter();
-            for k in 0..self.layout.span.intervals {
+            for k in 0..self.layout.span.all {
                 let at = pattern.horizon_scalars_at(k);
                 for (input, slope) in self.objective.inputs.iter().zip(&mut gradient) {
                     self.workspace.values[at + input.scalar] +=
                         sigma * slope * MILLISECOND / input.unit;
                 }
             }
-            self.workspace.values[pattern.horizon_square_at(self.layout.span.intervals)] +=
+            self.workspace.values[pattern.horizon_square_at(self.layout.span.all)] +=
                 sigma * square * MILLISECOND * MILLISECOND;
             self.cost_border(sigma);
         }

@@ -45,7 +45,7 @@ impl Layout {
     ) -> Self {
         let span = Span {
             end,
-            intervals: end + usize::from(control.seeks_hold()),
+            all: end + usize::from(control.seeks_hold()),
             is_closed: control.goal == BoundaryState::Periodic,
         };
         let map = &model.action.map;
@@ -115,7 +115,7 @@ impl Layout {
         let Some(of) = self.span.twin() else {
             return;
         };
-        let (before, twin) = instants.split_at_mut(self.span.intervals);
+        let (before, twin) = instants.split_at_mut(self.span.all);
         let (from, to) = (&before[of].z, &mut twin[0].z);
         to[..map.coordinates].copy_from_slice(&from[..map.coordinates]);
         to[map.unknowns()..].copy_from_slice(&from[map.unknowns()..]);
@@ -123,8 +123,8 @@ impl Layout {
 
     /// Instant at which a long horizon is cut in two.
     pub(super) fn middle(&self) -> Option<usize> {
-        let is_cut = self.horizon == Horizon::Given && self.span.intervals >= TWO_STRETCHES;
-        is_cut.then_some(self.span.intervals / 2)
+        let is_cut = self.horizon == Horizon::Given && self.span.all >= TWO_STRETCHES;
+        is_cut.then_some(self.span.all / 2)
     }
 }
 

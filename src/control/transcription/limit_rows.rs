@@ -92,7 +92,7 @@ pub(super) fn limit_rows(
         let single = sites(bounded.when, site, span, reads_inputs);
         let mut at = match &step {
             Some(step) => {
-                let is_given = |&i: &usize| unknowns.unknown(span.intervals, i).is_none();
+                let is_given = |&i: &usize| unknowns.unknown(span.all, i).is_none();
                 let all = step.at(support.iter().all(is_given));
                 match bounded.when {
                     When::Everywhere => all,
@@ -201,7 +201,7 @@ fn entries(
 fn sites(when: When, site: Site, span: Span, reads_inputs: bool) -> Range<usize> {
     let Span {
         end,
-        intervals,
+        all: intervals,
         is_closed,
     } = span;
     match (when, site) {
@@ -336,7 +336,7 @@ impl Step {
         let [first, last] = self.ends.each_ref().map(Option::is_some);
         let is_first = first || self.span.is_closed;
         let is_last = last && is_end_given;
-        usize::from(!is_first)..self.span.intervals + usize::from(is_last)
+        usize::from(!is_first)..self.span.all + usize::from(is_last)
     }
 
     /// The step at instant k as one of those that are limited.
@@ -345,7 +345,7 @@ impl Step {
             return limited;
         }
         let k = match self.span.is_closed {
-            true => k % self.span.intervals,
+            true => k % self.span.all,
             false => k,
         };
         let k = k.clamp(limited.start, limited.end - 1);
@@ -359,12 +359,12 @@ impl Step {
 
     /// Interval k, if the step to it is none to rest.
     pub(super) fn interval(&self, k: usize) -> Option<usize> {
-        (k < self.span.intervals).then_some(k)
+        (k < self.span.all).then_some(k)
     }
 
     /// The interval after interval k, the end counted as one.
     pub(super) fn after(&self, k: usize) -> usize {
-        match self.span.is_closed && k + 1 == self.span.intervals {
+        match self.span.is_closed && k + 1 == self.span.all {
             true => 0,
             false => k + 1,
         }

@@ -81,11 +81,7 @@ impl<'m> Transcription<'m> {
 
     /// Gradients of the limits, behind the periodic values.
     pub(super) fn limit_gradients(&mut self) {
-        let mut place = self
-            .model
-            .action
-            .layout()
-            .values(self.layout.span.intervals);
+        let mut place = self.model.action.layout().values(self.layout.span.all);
         let count = self.model.action.map.unknowns();
         self.workspace.rows[..count].fill(0.0);
         let mut derivatives = std::mem::take(&mut self.workspace.measured);
@@ -174,7 +170,7 @@ impl Transcription<'_> {
             .model
             .action
             .layout()
-            .horizon_square_at(self.layout.span.intervals);
+            .horizon_square_at(self.layout.span.all);
         self.workspace.values[square] += sum;
     }
 }

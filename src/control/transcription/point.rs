@@ -44,7 +44,7 @@ impl Decoder {
                 Column::Instant { .. } => {}
             }
         }
-        let last = self.span.intervals;
+        let last = self.span.all;
         if let Some(of) = self.span.twin().filter(|_| last < instants) {
             z[last] = z[of].clone();
         }
@@ -101,7 +101,7 @@ impl Transcription<'_> {
                 .map(|instant| instant.z.clone())
                 .collect(),
             scalars: (0..end).map(scalars).collect(),
-            held: (end < self.layout.span.intervals).then(|| scalars(end)),
+            held: (end < self.layout.span.all).then(|| scalars(end)),
             span: self.layout.span,
             h: self.workspace.h,
             columns: self.layout.unknowns.columns.clone(),
@@ -181,7 +181,7 @@ impl Transcription<'_> {
                 Row::Instant { k, i } => {
                     workspace.instants[k].l[i] = y;
                     if self.layout.span.is_closed && k == 0 && i < coordinates {
-                        workspace.instants[self.layout.span.intervals].l[i] = y;
+                        workspace.instants[self.layout.span.all].l[i] = y;
                     }
                 }
                 Row::Interval { k, s } => workspace.scalars_along[k * count + s] = y,

@@ -85,7 +85,7 @@ impl Nlp for Transcription<'_> {
                             _ => 0.0,
                         };
                         let again = match span.is_closed && k == 0 && i < coordinates {
-                            true => self.workspace.rows[span.intervals * stride + i],
+                            true => self.workspace.rows[span.all * stride + i],
                             false => 0.0,
                         };
                         self.workspace.rows[k * stride + i] + start + again

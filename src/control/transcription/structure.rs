@@ -83,7 +83,7 @@ fn entries(
 ) -> Result<(), BoundaryError> {
     let pattern = model.action.layout();
     let at = |k: usize, i: usize| Column::Instant { k, i };
-    for k in 0..=layout.span.intervals {
+    for k in 0..=layout.span.all {
         stop::check()?;
         for (slot, (i, j)) in pattern.same.entries().enumerate() {
             add(at(k, i), at(k, j), pattern.same_at(k) + slot, i < j);
@@ -91,7 +91,7 @@ fn entries(
         for i in 0..model.coordinate_count() {
             add(at(k, i), Column::Horizon, pattern.horizon_at(k) + i, false);
         }
-        if k == layout.span.intervals {
+        if k == layout.span.all {
             break;
         }
         let within = |s: usize| Column::Interval { k, s };
@@ -128,7 +128,7 @@ fn jacobian(model: &Model, layout: &Layout) -> Result<Matrix, BoundaryError> {
         matrix.add(u.row_of(row), u.number(col), place);
     })?;
     let first = u.rows.len() - layout.limit_rows.len();
-    let mut place = model.action.layout().values(layout.span.intervals);
+    let mut place = model.action.layout().values(layout.span.all);
     for (r, &(limit, k)) in layout.limit_rows.iter().enumerate() {
         for &entry in &layout.limits[limit].entries {
             matrix.add(Some(first + r), u.column_of_entry(k, entry), place);
@@ -155,10 +155,7 @@ fn hessian(model: &Model, layout: &Layout) -> Result<Matrix, BoundaryError> {
             matrix.add(Some(row.max(col)), Some(row.min(col)), place);
         }
     })?;
-    let square = model
-        .action
-        .layout()
-        .horizon_square_at(layout.span.intervals);
+    let square = model.action.layout().horizon_square_at(layout.span.all);
     matrix.add(u.horizon(), u.horizon(), square);
     stop::check()?;
     add_squares(model, layout, &mut matrix);
@@ -168,7 +165,7 @@ fn hessian(model: &Model, layout: &Layout) -> Result<Matrix, BoundaryError> {
 /// Adds the couplings of a coordinate with itself between neighbouring instants that share it, a second time: an entry of a square counts for
 /// both of its sides.
 fn add_squares(model: &Model, layout: &Layout, matrix: &mut Matrix) {
-    let instant = layout.span.intervals;
+    let instant = layout.span.all;
     let Some(of) = layout.span.twin().filter(|of| of + 1 == instant) else {
         return;
     };
@@ -194,9 +191,7 @@ fn jumps(layout: &Layout, objective: &Objective, entries: &mut Entries) -> Vec<J
     let coupling: Vec<_> = coupling.collect();
     let mut jumps = Vec::new();
     let first = usize::from(!layout.span.is_closed);
-    for (k, before) in
-        (first..layout.span.intervals).filter_map(|k| Some((k, layout.span.before(k)?)))
-    {
+    for (k, before) in (first..layout.span.all).filter_map(|k| Some((k, layout.span.before(k)?))) {
         for &(input, s, energy) in &coupling {
             if let (Some(row), Some(col)) = (u.scalar(k, s), u.scalar(before, s)) {
                 entries.rows.push(row.max(col) as u32);

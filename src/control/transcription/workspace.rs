@@ -49,7 +49,7 @@ impl Workspace {
         initial: &InitialGuess,
         layout: &Layout,
     ) -> Self {
-        let (action, intervals) = (&model.action, layout.span.intervals);
+        let (action, intervals) = (&model.action, layout.span.all);
         let map = &action.map;
         let scalars = given_scalars(model, control, layout);
         let scalar_count = model.variables.of(Time::Interval).len();
@@ -88,7 +88,7 @@ fn given_instants(
 ) -> Vec<Configuration> {
     let map = &model.action.map;
     let unknowns = map.unknowns();
-    let mut instants = vec![map.instant(); layout.span.intervals + 1];
+    let mut instants = vec![map.instant(); layout.span.all + 1];
     for (instant, z) in instants.iter_mut().zip(&initial.discrete.z) {
         instant.z[unknowns..].copy_from_slice(&z[unknowns..]);
     }
@@ -115,7 +115,7 @@ fn given_scalars(model: &Model, control: &Control, layout: &Layout) -> Vec<f64> 
         let scalars = model.variables.of(Time::Interval).iter();
         scalars.map(move |variable| control.given(variable, time).unwrap_or(0.0))
     };
-    (0..layout.span.intervals).flat_map(given).collect()
+    (0..layout.span.all).flat_map(given).collect()
 }
 
 /// Inputs of all intervals in kV, N and N m, from `count` scalars of each.
