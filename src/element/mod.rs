@@ -28,11 +28,11 @@ mod isochoric;
 mod lanes;
 mod law;
 mod local;
-mod maxwell_spring;
 mod number;
 mod variations;
 mod viscosity;
 
+pub use branch::{MaxwellSpring, ViscousStrains, relaxed};
 pub use dilatation::{Dilatation, second_derivatives_of_volume};
 pub use elastomer::Elastomer;
 pub use evaluation::{ElementEnergy, NodeState};
@@ -41,5 +41,4 @@ pub use geometry::{ElementGeometry, Inverted};
 pub use isochoric::{ElementLaw, IsochoricLaw};
 pub use law::{Dielectric, ElectricDerivatives, Field, Passive, Volume};
 pub use local::{BranchLocal, COORDINATES, Local};
-pub use maxwell_spring::{MaxwellSpring, ViscousStrains, relaxed};
 pub use viscosity::{Viscosity, ViscousContraction, ViscousLocal};

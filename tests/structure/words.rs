@@ -130,7 +130,7 @@ const PATHS: [(&str, &str); 52] = [
     ("model/places", "model/layout/variables"),
     ("sparse/again", "sparse/factorisation"),
     ("study/price", "study/table"),
-    ("sweep/kept", "sweep/variant_record"),
+    ("sweep/kept", "app/batch"),
     ("workflow/at_once", "workflow/parallel_map"),
     ("workflow/cure", "workflow/grids"),
     ("workflow/holding", "workflow/hold_check"),

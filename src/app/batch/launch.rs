@@ -204,7 +204,7 @@ pub(crate) fn task_runs_at_once(task: &Task) -> bool {
     options.run_at_once()
 }
 
-/// How a solve ended.
+/// The end of a solve.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) enum Said {
     /// There was no time for it.
