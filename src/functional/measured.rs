@@ -6,7 +6,7 @@ use crate::functional::{
     Couplings, Group, Horizon, Kernel, Measure, Order, Outer, Sample, Scatter, Stencil,
     SumDerivatives, VectorArg,
 };
-use crate::math::{Derivatives, Matrix, Vector};
+use crate::math::{Derivatives, Vector};
 
 /// The gradient of a quantity.
 struct Gradient<'a, K: Kernel> {
@@ -41,20 +41,21 @@ impl<K: Kernel> Scatter for AlongRates<'_, K> {
     fn along<D: Derivatives, W: Derivatives>(&mut self, _: &D, _: &W) {}
 }
 
-/// The gradient and Hessian of a function of a quantity.
+/// The gradient and Hessian of a quantity times a factor.
 struct Weighted<'a, K: Kernel> {
     places: Places<'a, K>,
-    scale: f64,
-    outer: Outer,
+    c: f64,
     /// Rates that the quantity reads, where derivatives by the length of the interval are asked for.
     rates: Option<Rates<'a, K>>,
     h: f64,
     part: &'a mut SumDerivatives,
 }
 
-impl<K: Kernel> Weighted<'_, K> {
-    fn add<D: Derivatives>(&mut self, c: f64, d: &D) {
-        let part = &mut *self.part;
+impl<K: Kernel> Scatter for Weighted<'_, K> {
+    const ORDER: Option<Order> = Some(Order::Hessian);
+
+    fn plain<D: Derivatives>(&mut self, d: &D) {
+        let (c, part) = (self.c, &mut *self.part);
         self.places.first(c, ALL, d, &mut part.first());
         if K::DEGREE >= 2 {
             self.places.second(c, ALL, ALL, d, part);
@@ -66,6 +67,8 @@ impl<K: Kernel> Weighted<'_, K> {
             part.horizon += c * (2.0 * v.along_gradient(d) + v.form(d, v)) / self.h;
         }
     }
+
+    fn along<D: Derivatives, W: Derivatives>(&mut self, _: &D, _: &W) {}
 }
 
 impl<K: Kernel> Group<K> {
@@ -75,24 +78,6 @@ impl<K: Kernel> Group<K> {
             .iter()
             .flat_map(|e| (0..e.vectors() * K::READINGS).map(move |i| e.vector(i)))
     }
-}
-
-impl<K: Kernel> Scatter for Weighted<'_, K> {
-    const ORDER: Option<Order> = Some(Order::Hessian);
-
-    fn plain<D: Derivatives>(&mut self, d: &D) {
-        let Outer { slope, curvature } = self.outer;
-        if curvature == 0.0 {
-            return self.add(self.scale * slope, d);
-        }
-        let outer = Outer {
-            slope: self.scale * slope,
-            curvature: self.scale * self.scale * curvature,
-        };
-        self.add(1.0, &OfQuantity { outer, of: d });
-    }
-
-    fn along<D: Derivatives, W: Derivatives>(&mut self, _: &D, _: &W) {}
 }
 
 impl<K: Kernel> Measure for Group<K> {
@@ -164,8 +149,7 @@ impl<K: Kernel> Measure for Group<K> {
         slots: &[u32],
         part: &mut SumDerivatives,
     ) {
-        let is_one = self.elements.len() == 1;
-        debug_assert!(outer.curvature == 0.0 || is_one, "a sum has one square");
+        debug_assert!(outer.curvature == 0.0, "a sum takes curved functions");
         let order = Order::Hessian;
         let is_free = sample.horizon == Horizon::Free && self.reads_rates();
         self.each(
@@ -176,8 +160,7 @@ impl<K: Kernel> Measure for Group<K> {
             |element, places, storage| {
                 let mut weighted = Weighted {
                     places,
-                    scale: self.scale,
-                    outer,
+                    c: self.scale * outer.slope,
                     rates: is_free.then(|| Rates::new(element, sample)),
                     h: sample.h,
                     part: &mut *part,
@@ -185,80 +168,5 @@ impl<K: Kernel> Measure for Group<K> {
                 element.derivatives(order, sample, storage, &mut weighted);
             },
         );
-    }
-}
-
-/// Derivatives of c(m) from those of m.
-pub(super) struct OfQuantity<'a, D> {
-    pub(super) outer: Outer,
-    pub(super) of: &'a D,
-}
-
-impl<D: Derivatives> Derivatives for OfQuantity<'_, D> {
-    fn force(&self, i: usize) -> Vector {
-        self.of.force(i) * self.outer.slope
-    }
-
-    fn row(&self, s: usize) -> f64 {
-        self.of.row(s) * self.outer.slope
-    }
-
-    fn block(&self, i: usize, j: usize) -> Matrix {
-        let square = self.of.force(i) * self.of.force(j).transpose();
-        self.of.block(i, j) * self.outer.slope + square * self.outer.curvature
-    }
-
-    fn column(&self, i: usize, s: usize) -> Vector {
-        let square = self.of.force(i) * self.of.row(s);
-        self.of.column(i, s) * self.outer.slope + square * self.outer.curvature
-    }
-
-    fn entry(&self, s: usize, t: usize) -> f64 {
-        let square = self.of.row(s) * self.of.row(t);
-        self.of.entry(s, t) * self.outer.slope + square * self.outer.curvature
-    }
-}
-
-/// An element of which a curved function is taken: all its arguments couple.
-#[derive(Clone, Debug)]
-pub struct Curved<K>(pub K);
-
-impl<K: Kernel> Kernel for Curved<K> {
-    type Storage = K::Storage;
-
-    const READINGS: usize = K::READINGS;
-
-    fn vectors(&self) -> usize {
-        self.0.vectors()
-    }
-
-    fn scalars(&self) -> usize {
-        self.0.scalars()
-    }
-
-    fn vector(&self, i: usize) -> VectorArg {
-        self.0.vector(i)
-    }
-
-    fn scalar(&self, s: usize) -> Option<(usize, f64)> {
-        self.0.scalar(s)
-    }
-
-    fn energy(&self, sample: &Sample<'_>) -> f64 {
-        self.0.energy(sample)
-    }
-
-    fn prepare(&self, order: Order, sample: &Sample<'_>, storage: &mut K::Storage) {
-        self.0.prepare(order, sample, storage);
-    }
-
-    fn derivatives<S: Scatter>(
-        &self,
-        order: Order,
-        sample: &Sample<'_>,
-        storage: &K::Storage,
-        to: &mut S,
-    ) {
-        self.0.derivatives(order, sample, storage, to);
     }
 }

@@ -40,7 +40,6 @@ pub use impulse::{Displacement, Impulse, Turn};
 pub use inertia::{Inertia, Mass};
 pub use kernel::{Kernel, Scatter};
 pub use laws::{LawElement, MOST_PARAMETERS, Move};
-pub use measured::Curved;
 pub use node_blocks::{NodeBlocks, NodeVolume, Pressures, ScalarPlace, VectorPlace};
 pub use paths::Path;
 pub use pressure::PressureFace;

@@ -6,7 +6,7 @@ use crate::energy::{
     ProjectionStep, SquaredDistance, law,
 };
 use crate::functional::{
-    Curved, Element, ElementField, Group, Kernel, LawElement, Measure, Stencil, Term, VectorArg,
+    Element, ElementField, Group, Kernel, LawElement, Measure, Stencil, Sum, Term, VectorArg,
 };
 use crate::kinematics::{MaterialVector, Vectors};
 use crate::math::{Jet, Number, Vector};
@@ -122,9 +122,10 @@ impl Shape {
 
     /// Measure of an element times a factor.
     fn scaled<K: Kernel>(self, scale: f64, element: K) -> Box<dyn Measure> {
+        let measure = Group::intervals("measure", scale, vec![element]);
         match self {
-            Self::Linear => Box::new(Group::intervals("measure", scale, vec![element])),
-            Self::Curved => Box::new(Group::intervals("measure", scale, vec![Curved(element)])),
+            Self::Linear => Box::new(measure),
+            Self::Curved => Box::new(Sum::curved(vec![Box::new(measure)])),
         }
     }
 }
