@@ -98,16 +98,9 @@ pub fn bytes(discrete: &DiscreteTrajectory, problem: &str) -> io::Result<Vec<u8>
         report.factorisations,
     ];
     arrays.list("report/counts", &counts.map(|count| count as f64));
-    let StepperReport {
-        assembly,
-        factorisation,
-        solution,
-        made,
-        exchanged,
-        ..
-    } = *report;
-    arrays.list("report/seconds", &[assembly, factorisation, solution]);
-    arrays.list("report/energies", &[made, exchanged]);
+    let seconds = [report.assembly, report.factorisation, report.solution];
+    arrays.list("report/seconds", &seconds);
+    arrays.list("report/energies", &[report.made, report.exchanged]);
     let MultigridReport {
         iterations,
         hierarchies,

@@ -2,10 +2,9 @@
 
 mod read;
 mod record;
-mod write;
 mod write_c;
 
 pub(crate) use read::read_law;
 pub(crate) use record::{factor_of, unit_of};
-pub use write::{law_csv, law_json};
+pub use record::{law_csv, law_json};
 pub use write_c::law_c;

@@ -4,8 +4,8 @@ use crate::feedback::{
     Filter, Forced, Integral, Lasting, Law, LawInput, Measured, Memory, Observer, Point, Reading,
 };
 use crate::files::feedback::record::{
-    FilterRecord, InputRecord, LastingRecord, LawRecord, MeasuredRecord, ObserverRecord,
-    PointRecord, ReadingRecord, factor_of, integrated, unit_of, unit_of_force, unit_of_input,
+    Factors, FilterRecord, InputRecord, LastingRecord, LawRecord, Listed, MeasuredRecord,
+    ObserverRecord, PointRecord, ReadingRecord, factor_of, unit_of, unit_of_force, unit_of_input,
 };
 use crate::files::json::document::Document;
 use crate::files::json::error::{Result, SceneError};
@@ -33,7 +33,20 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law> {
     let inputs = At::new(&scope, system).key("inputs");
     let inputs: Vec<(LawInput, f64)> = inputs.each(&record.inputs, of_input)?;
     let (inputs, of_inputs) = inputs.into_iter().unzip::<_, _, Vec<_>, Vec<_>>();
-    let (read, acting) = factors(&measured, &inputs, &of_inputs, &record, &scope)?;
+    check_sizes(&record, measured.len(), &scope)?;
+    let forces = forces(&record, &scope)?;
+    let of = Listed {
+        measured: &measured,
+        inputs: &inputs,
+        forces: &forces,
+        integrals: &record.integrals,
+        delay: record.delay_intervals,
+    };
+    let Factors {
+        read,
+        acting,
+        inputs: of_inputs,
+    } = Factors::new(&of, of_inputs);
     let point = |record: &PointRecord, place: &Scope<'_>| {
         let measured = &read[..measured.len()];
         Ok::<Point, SceneError>(Point {
@@ -52,10 +65,16 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law> {
     let held = scope.optional("held", &record.held, |at, one| point(one, at))?;
     let markers = markers(&record, points.len() + 1, system);
     let of_observer = record.observer.as_ref().map(|one| {
-        let forces = one.lasting.as_ref().map_or(0, |one| one.forces.len());
-        let factors = [&read[..measured.len() + forces], &acting];
+        let factors = [&read[..measured.len() + forces.len()], &acting];
         let place = scope.key("observer");
-        observer(one, &measured, points.len(), factors, &place)
+        observer(
+            one,
+            &measured,
+            forces.clone(),
+            points.len(),
+            factors,
+            &place,
+        )
     });
     let observer = of_observer.transpose()?;
     if observer
@@ -80,52 +99,38 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law> {
     })
 }
 
-/// Factors of the units of all columns of a gain, and of the inputs in the units in which they act.
-fn factors(
-    measured: &[Measured],
-    inputs: &[LawInput],
-    of_inputs: &[f64],
-    record: &LawRecord,
-    scope: &Scope<'_>,
-) -> Result<(Vec<f64>, Vec<f64>)> {
+/// Refuses integrals of what is not measured, and a delay that is too long.
+fn check_sizes(record: &LawRecord, measured: usize, scope: &Scope<'_>) -> Result<()> {
     let place = scope.key("integrals");
     for (i, &of) in record.integrals.iter().enumerate() {
-        refuse!(if of >= measured.len(), place.index(i);
-            found of, expected format!("a place below {}", measured.len()));
+        refuse!(if of >= measured, place.index(i);
+            found of, expected format!("a place below {measured}"));
     }
-    let mut read: Vec<f64> = measured.iter().map(|one| unit_of(one).1).collect();
-    let acting = inputs.iter().zip(of_inputs);
-    let acting = acting.map(|(input, unit)| match input.is_squared {
-        true => unit * unit,
-        false => *unit,
-    });
-    let acting: Vec<f64> = acting.collect();
-    let lasting = record.observer.as_ref();
-    if let Some(lasting) = lasting.and_then(|one| one.lasting.as_ref()) {
-        let place = scope.key("observer").key("lasting").key("forces");
-        refuse!(if lasting.forces.is_empty(), place; found "none", expected "one force or more");
-        for (i, force) in lasting.forces.iter().enumerate() {
-            let mut kinds = [false, true].map(unit_of_force).into_iter();
-            let own = kinds.find(|(unit, _)| *unit == force.unit);
-            let wrong = || {
-                let place = place.index(i).key("unit");
-                place.wrong(format!("{:?}", force.unit), "\"N m\" or \"N\"")
-            };
-            read.push(own.ok_or_else(wrong)?.1);
-        }
-        read.extend(&acting);
-    }
-    read.extend(
-        record
-            .integrals
-            .iter()
-            .map(|&of| integrated(read[of]))
-            .collect::<Vec<_>>(),
-    );
     refuse!(if record.delay_intervals > MOST_DELAYED, scope.key("delay_intervals");
         found record.delay_intervals, expected format!("no more than {MOST_DELAYED}"));
-    (0..record.delay_intervals).for_each(|_| read.extend(&acting));
-    Ok((read, acting))
+    Ok(())
+}
+
+/// The constant disturbances that the observer finds.
+fn forces(record: &LawRecord, scope: &Scope<'_>) -> Result<Vec<Forced>> {
+    let observer = record.observer.as_ref();
+    let Some(lasting) = observer.and_then(|one| one.lasting.as_ref()) else {
+        return Ok(Vec::new());
+    };
+    let place = scope.key("observer").key("lasting").key("forces");
+    refuse!(if lasting.forces.is_empty(), place; found "none", expected "one force or more");
+    place.each(&lasting.forces, |force, place| {
+        let mut kinds = [false, true].into_iter();
+        let own = kinds.find(|&is_length| unit_of_force(is_length).0 == force.unit);
+        let wrong = || {
+            let found = format!("{:?}", force.unit);
+            place.key("unit").wrong(found, "\"N m\" or \"N\"")
+        };
+        Ok(Forced {
+            name: force.on.clone(),
+            is_length: own.ok_or_else(wrong)?,
+        })
+    })
 }
 
 /// Places in mm of markers that the system has, at a number of instants.
@@ -228,6 +233,7 @@ fn matrix(
 fn observer(
     record: &ObserverRecord,
     measured: &[Measured],
+    forces: Vec<Forced>,
     intervals: usize,
     [state, acting]: [&[f64]; 2],
     place: &Scope<'_>,
@@ -258,13 +264,9 @@ fn observer(
     refuse!(if record.intervals.len() != intervals, of_intervals;
         found record.intervals.len(), expected format!("{intervals}, one for each interval"));
     let lasting = record.lasting.as_ref().map(|one: &LastingRecord| {
-        let on = one.forces.iter().map(|force| Forced {
-            name: force.on.clone(),
-            is_length: force.unit == unit_of_force(true).0,
-        });
         let place = place.key("lasting").key("by_inputs");
         Ok::<Lasting, SceneError>(Lasting {
-            on: on.collect(),
+            on: forces,
             by_inputs: matrix(&one.by_inputs, [&state[measured.len()..], acting], &place)?,
         })
     });

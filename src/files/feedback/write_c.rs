@@ -2,14 +2,16 @@
 
 use crate::feedback::Law;
 use crate::files::feedback::record::{
-    FilterRecord, ForceRecord, LawRecord, PointRecord, ReadingRecord, unit_of_force,
+    FilterRecord, ForceRecord, LawRecord, PointRecord, ReadingRecord, record, unit_of_force,
 };
-use crate::files::feedback::write::record;
 use crate::model::System;
 use std::fmt::Write;
 
 /// Code behind the tables.
 const CODE: &str = include_str!("controller.c");
+
+/// A matrix row by row.
+type Rows = Vec<Vec<f64>>;
 
 /// The text of `feedback.c`; `head` says where it is from.
 pub fn law_c(law: &Law, system: &System, head: &str) -> String {
@@ -57,58 +59,52 @@ fn sizes(record: &LawRecord, out: &mut String) {
     );
 }
 
-/// Adds a table of rows.
-fn table(out: &mut String, declaration: &str, rows: impl Iterator<Item = String>) {
+/// Adds a table of rows of a type: its name, its sizes, and the rows.
+fn table(out: &mut String, of: &str, sizes: &[&str], rows: impl Iterator<Item = String>) {
+    let (kind, name) = of.split_once(' ').unwrap_or(("double", of));
+    let sizes = sizes.iter().map(|size| match size.parse::<usize>() {
+        Ok(size) => format!("[{size}]"),
+        Err(_) => format!("[FEEDBACK_{size}]"),
+    });
+    let sizes: String = sizes.collect();
     let rows: Vec<String> = rows.collect();
     let rows = rows.join(",\n  ");
-    writeln!(out, "static const {declaration} = {{\n  {rows}\n}};\n")
-        .expect("text takes everything");
+    writeln!(
+        out,
+        "static const {kind} feedback_{name}{sizes} = {{\n  {rows}\n}};\n"
+    )
+    .expect("text takes everything");
 }
 
 /// Tables of the motion and of its gains.
 fn tables(record: &LawRecord, out: &mut String) {
     let interval = [number(record.interval)];
-    table(out, "double feedback_interval[1]", interval.into_iter());
+    table(out, "interval", &["1"], interval.into_iter());
     // C has no empty arrays.
     if !record.integrals.is_empty() {
         let places = record.integrals.iter().map(usize::to_string);
-        table(out, "int feedback_integrated[FEEDBACK_INTEGRALS]", places);
+        table(out, "int integrated", &["INTEGRALS"], places);
     }
     let squared = record.inputs.iter().map(|one| u8::from(one.is_squared));
     let squared = squared.map(|is_squared| is_squared.to_string());
-    table(out, "int feedback_squared[FEEDBACK_INPUTS]", squared);
+    table(out, "int squared", &["INPUTS"], squared);
     let bounds = record.inputs.iter().map(|one| row(&one.bounds));
-    table(out, "double feedback_bounds[FEEDBACK_INPUTS][2]", bounds);
+    table(out, "bounds", &["INPUTS", "2"], bounds);
     if record.observer.is_none() {
         let states = points(record).map(|point| row(&point.state));
-        table(
-            out,
-            "double feedback_state[FEEDBACK_POINTS][FEEDBACK_STATES]",
-            states,
-        );
+        table(out, "state", &["POINTS", "STATES"], states);
     }
     let given = points(record).map(|point| row(&point.inputs));
-    table(
-        out,
-        "double feedback_given[FEEDBACK_POINTS][FEEDBACK_INPUTS]",
-        given,
-    );
-    table(
-        out,
-        "double feedback_gain[FEEDBACK_POINTS][FEEDBACK_INPUTS][FEEDBACK_READ]",
-        points(record).map(|point| matrix(&point.gain)),
-    );
+    table(out, "given", &["POINTS", "INPUTS"], given);
+    let gains = points(record).map(|point| matrix(&point.gain));
+    table(out, "gain", &["POINTS", "INPUTS", "READ"], gains);
     if record.delay_intervals > 0 {
         let none = vec![0.0; record.inputs.len()];
         let offset = points(record).map(|point| match point.offset.is_empty() {
             true => row(&none),
             false => row(&point.offset),
         });
-        table(
-            out,
-            "double feedback_offset[FEEDBACK_POINTS][FEEDBACK_INPUTS]",
-            offset,
-        );
+        table(out, "offset", &["POINTS", "INPUTS"], offset);
     }
 }
 
@@ -119,18 +115,11 @@ fn observer_tables(record: &LawRecord, out: &mut String) {
     };
     let filters = || observer.intervals.iter().chain(&observer.held);
     let readings = filters().map(|one| row(&one.readings));
-    table(
-        out,
-        "double feedback_reading[FEEDBACK_POINTS][FEEDBACK_READINGS]",
-        readings,
-    );
-    let mut of =
-        |name: &str, rows: &str, columns: &str, list: fn(&FilterRecord) -> &Vec<Vec<f64>>| {
-            let declaration = format!(
-                "double feedback_{name}[FEEDBACK_POINTS][FEEDBACK_{rows}][FEEDBACK_{columns}]"
-            );
-            table(out, &declaration, filters().map(|one| matrix(list(one))));
-        };
+    table(out, "reading", &["POINTS", "READINGS"], readings);
+    let mut of = |name: &str, rows: &str, columns: &str, list: fn(&FilterRecord) -> &Rows| {
+        let list = filters().map(|one| matrix(list(one)));
+        table(out, name, &["POINTS", rows, columns], list);
+    };
     of("by_state", "ESTIMATED", "ESTIMATED", |one| &one.by_state);
     of("by_input", "ESTIMATED", "INPUTS", |one| &one.by_inputs);
     of("output", "READINGS", "ESTIMATED", |one| &one.output);
@@ -139,11 +128,7 @@ fn observer_tables(record: &LawRecord, out: &mut String) {
     let forces = lasting.map_or(&[][..], |one| &one.forces);
     let size = record.measured.len() + forces.len();
     let jump = observer.jump.iter().copied().chain(std::iter::repeat(0.0));
-    table(
-        out,
-        "double feedback_jump[FEEDBACK_ESTIMATED]",
-        jump.take(size).map(number),
-    );
+    table(out, "jump", &["ESTIMATED"], jump.take(size).map(number));
     if let Some(lasting) = lasting {
         // Forces that cannot be held count in N and N mm.
         let kinds = [true, false].map(unit_of_force);
@@ -152,17 +137,12 @@ fn observer_tables(record: &LawRecord, out: &mut String) {
             1.0 / own.map_or(1.0, |(_, factor)| *factor)
         };
         let units: Vec<f64> = forces.iter().map(unit).collect();
-        let rows = lasting.by_inputs.iter().zip(&units);
-        let rows: Vec<String> = rows
-            .map(|(of, unit)| row(&of.iter().map(|value| value * unit).collect::<Vec<_>>()))
-            .collect();
+        let scaled = |(of, unit): (&Vec<f64>, &f64)| of.iter().map(|value| value * unit).collect();
+        let rows: Rows = lasting.by_inputs.iter().zip(&units).map(scaled).collect();
         let units = units.into_iter().map(number);
-        table(out, "double feedback_force_unit[FEEDBACK_FORCES]", units);
-        table(
-            out,
-            "double feedback_force[FEEDBACK_FORCES][FEEDBACK_INPUTS]",
-            rows.into_iter(),
-        );
+        table(out, "force_unit", &["FORCES"], units);
+        let rows = rows.iter().map(|one| row(one));
+        table(out, "force", &["FORCES", "INPUTS"], rows);
     }
 }
 

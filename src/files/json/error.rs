@@ -60,7 +60,7 @@ impl Excerpt {
         let lines = &text[start..end];
         let is_long = lines.lines().any(|line| line.len() > LONGEST_LINE);
         Self {
-            lines: (!is_long).then(|| shown(lines)),
+            lines: (!is_long).then(|| shown(lines).into_owned()),
             first: 1 + before[..start].matches('\n').count(),
             start,
             span,
@@ -70,17 +70,11 @@ impl Excerpt {
 
 /// The text with question marks, as many as bytes, in place of unprintable characters, and spaces for carriage returns; places
 /// in it stay where they are.
-fn shown(text: &str) -> String {
-    let mut shown = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '\r' => shown.push(' '),
-            '\n' | '\t' => shown.push(c),
-            _ if is_printable(c) => shown.push(c),
-            _ => shown.extend(std::iter::repeat_n('?', c.len_utf8())),
-        }
-    }
-    shown
+fn shown(text: &str) -> Cow<'_, str> {
+    replaced(text, &['\n', '\t'], |c| match c {
+        '\r' => " ".to_owned(),
+        _ => "?".repeat(c.len_utf8()),
+    })
 }
 
 impl From<Mistake> for SceneError {
@@ -184,16 +178,26 @@ pub(crate) fn is_printable(c: char) -> bool {
     !c.is_control() && !matches!(c, '\u{2028}'..='\u{202e}' | '\u{2066}'..='\u{2069}')
 }
 
-/// A text in which characters that are not printable stand as their escapes, such as `\u{1b}`.
-pub fn printable(text: &str) -> Cow<'_, str> {
-    if text.chars().all(is_printable) {
+/// A text with something else in place of characters that are not printable and none of those `kept`.
+fn replaced<'t>(text: &'t str, kept: &[char], by: impl Fn(char) -> String) -> Cow<'t, str> {
+    let stays = |c: &char| is_printable(*c) || kept.contains(c);
+    if text.chars().all(|c| stays(&c)) {
         return Cow::Borrowed(text);
     }
-    let escaped = text.chars().map(|c| match is_printable(c) {
+    let shown = text.chars().map(|c| match stays(&c) {
         true => c.to_string(),
-        false => c.escape_default().to_string(),
+        false => by(c),
     });
-    Cow::Owned(escaped.collect())
+    Cow::Owned(shown.collect())
+}
+
+fn escape(c: char) -> String {
+    c.escape_default().to_string()
+}
+
+/// A text in which characters that are not printable stand as their escapes, such as `\u{1b}`.
+pub fn printable(text: &str) -> Cow<'_, str> {
+    replaced(text, &[], escape)
 }
 
 /// Lines shown before and after an error.
@@ -239,29 +243,16 @@ pub fn note(text: &str) -> String {
     lines(&shortened(text, MESSAGE))
 }
 
-/// Lines in which characters that are not printable stand as their escapes.
+/// Lines in which characters that are not printable stand as their escapes; tabs are printable.
 pub fn lines(text: &str) -> String {
-    let lines: Vec<_> = text.split('\n').map(of_line).collect();
-    lines.join("\n")
-}
-
-/// A line, in which tabs are printable.
-fn of_line(line: &str) -> String {
-    let parts: Vec<_> = line.split('\t').map(printable).collect();
-    parts.join("\t")
+    replaced(text, &['\n', '\t'], escape).into_owned()
 }
 
 /// A JSON text in which characters that are not printable stand as escapes of JSON.
 pub fn printable_json(text: &str) -> String {
-    let mut shown = String::with_capacity(text.len());
-    for c in text.chars() {
-        match is_printable(c) || matches!(c, '\n' | '\t') {
-            true => shown.push(c),
-            // All of them are below 2^16.
-            false => shown.push_str(&format!("\\u{:04x}", u32::from(c))),
-        }
-    }
-    shown
+    // All of them are below 2^16.
+    let escape = |c: char| format!("\\u{:04x}", u32::from(c));
+    replaced(text, &['\n', '\t'], escape).into_owned()
 }
 
 /// The candidate most like a name, where one is like enough.

@@ -16,30 +16,57 @@ pub struct Output {
     pub quantities: Option<Vec<String>>,
 }
 
+/// Whether a column of a system is of a kind, by its name.
+type IsOfKind = fn(&str, &System) -> bool;
+
 /// Words for columns of one kind.
-const KINDS: [&str; 14] = [
-    "joints",
-    "rates",
-    "speeds",
-    "reactions",
-    "markers",
-    "stretches",
-    "tensions",
-    "fields",
-    "charges",
-    "currents",
-    "powers",
-    "energies",
-    "momenta",
-    "constraint_violation",
+const KINDS: [(&str, IsOfKind); 14] = [
+    ("joints", is_of_joint),
+    ("rates", |column, _| column.ends_with("_rate")),
+    ("speeds", |column, _| column.ends_with("_speed")),
+    ("reactions", |column, _| {
+        column.contains("_force_") || column.contains("_torque_")
+    }),
+    ("markers", is_of_marker),
+    ("stretches", |column, _| column.ends_with("_stretch")),
+    ("tensions", |column, _| column.ends_with("_tension")),
+    ("fields", |column, _| column.ends_with("_field")),
+    ("charges", |column, _| column.ends_with("_charge")),
+    ("currents", |column, _| column.ends_with("_current")),
+    ("powers", |column, _| column.ends_with("_power")),
+    ("energies", is_energy),
+    ("momenta", |column, _| column.contains("_momentum_")),
+    ("constraint_violation", |column, _| {
+        column == "constraint_violation"
+    }),
 ];
+
+fn is_of_joint(column: &str, system: &System) -> bool {
+    system.joints.iter().any(|joint| {
+        let several = joint.several_names();
+        joint.name == column || several.iter().any(|(name, _)| name == column)
+    })
+}
+
+fn is_of_marker(column: &str, system: &System) -> bool {
+    let point = column.strip_suffix(['x', 'y', 'z']);
+    let marker = point.and_then(|point| point.strip_suffix('_'));
+    let mut markers = system.markers.iter();
+    markers.any(|m| Some(m.name.as_str()) == marker)
+}
+
+fn is_energy(column: &str, _: &System) -> bool {
+    let at_end = ["mechanical_work", "_heat"];
+    column.contains("energy") || at_end.iter().any(|end| column.ends_with(end))
+}
 
 pub(crate) fn output(spec: &OutputSpec, at: &At<'_>) -> Result<Output> {
     let every = at.optional("every", &spec.every, |at, every| at.positive(every))?;
     let place = at.key("quantities");
     refuse!(if spec.quantities.as_ref().is_some_and(Vec::is_empty), place;
         found "none", expected "one or more names of quantities");
-    let mut known: Vec<String> = KINDS.map(str::to_owned).to_vec();
+    let kinds = KINDS.map(|(kind, _)| kind);
+    let mut known: Vec<String> = kinds.map(str::to_owned).to_vec();
     known.extend(names(&at.system.joints, |joint| &joint.name));
     known.extend(names(&at.system.markers, |marker| &marker.name));
     known.extend(names(&at.system.muscles, |muscle| &muscle.name));
@@ -49,7 +76,7 @@ pub(crate) fn output(spec: &OutputSpec, at: &At<'_>) -> Result<Output> {
     for (index, name) in spec.quantities.iter().flatten().enumerate() {
         let expected = format!(
             "{}, or the name of a joint, marker, muscle, block, spring, tendon or load",
-            KINDS.join(", ")
+            kinds.join(", ")
         );
         place.index(index).find(name, &known, &expected)?;
     }
@@ -65,36 +92,9 @@ impl Output {
         let Some(quantities) = &self.quantities else {
             return true;
         };
-        let of_kind = |kind: &str| match kind {
-            "joints" => system.joints.iter().any(|joint| {
-                let several = joint.several_names();
-                joint.name == column || several.iter().any(|(name, _)| name == column)
-            }),
-            "markers" => {
-                let point = column.strip_suffix(['x', 'y', 'z']);
-                let marker = point.and_then(|point| point.strip_suffix('_'));
-                system
-                    .markers
-                    .iter()
-                    .any(|m| Some(m.name.as_str()) == marker)
-            }
-            "rates" => column.ends_with("_rate"),
-            "speeds" => column.ends_with("_speed"),
-            "reactions" => column.contains("_force_") || column.contains("_torque_"),
-            "stretches" => column.ends_with("_stretch"),
-            "tensions" => column.ends_with("_tension"),
-            "fields" => column.ends_with("_field"),
-            "charges" => column.ends_with("_charge"),
-            "currents" => column.ends_with("_current"),
-            "powers" => column.ends_with("_power"),
-            "energies" => {
-                column.contains("energy")
-                    || column.ends_with("mechanical_work")
-                    || column.ends_with("_heat")
-            }
-            "momenta" => column.contains("_momentum_"),
-            "constraint_violation" => column == kind,
-            _ => false,
+        let of_kind = |word: &str| {
+            let mut kinds = KINDS.iter();
+            kinds.any(|(kind, is_of_it)| *kind == word && is_of_it(column, system))
         };
         let of_name = |name: &str| {
             let rest = column.strip_prefix(name);
