@@ -18,9 +18,8 @@ use crate::files::problem::at::At;
 use crate::files::problem::build::{ProblemSpec, SceneSource, build_problem};
 use crate::files::problem::feedback::regulator;
 use crate::files::problem::output::{Output, output};
-use crate::files::problem::receding::add_plan;
 use crate::files::problem::variants::{
-    MotionDocument, changed_scenes, disturbed, motions, together,
+    MotionDocument, add_plan, changed_scenes, disturbed, motions, together,
 };
 use crate::files::scene::build::build_scene;
 use crate::files::scene::constants::WrittenScene;
@@ -50,12 +49,10 @@ pub mod units;
 pub mod urdf;
 
 pub(crate) use columns::Columns;
-pub(crate) use json::document::Document;
-pub(crate) use json::entries::Entries;
+pub(crate) use json::document::{Document, is_standard_input};
 pub use json::error::{SceneError, lines, message, note, printable, printable_json};
-pub(crate) use json::layout::lay_out;
+pub(crate) use json::layout::{Entries, lay_out};
 pub(crate) use json::scope::Scope;
-pub(crate) use json::source::is_standard_input;
 pub(crate) use scene::build::LONGEST_CHAIN;
 pub use scene::material::named_materials;
 pub use scene::trunk::new_trunk;

@@ -5,7 +5,7 @@ use std::io::Cursor;
 use std::path::Path;
 use stl_io::{Normal, Triangle, Vertex, create_stl_reader, write_stl};
 
-use crate::files::json::source::{NoBytes, of_file};
+use crate::files::json::document::{NoBytes, of_file};
 use crate::mesh::error::{MeshError, MeshPlace};
 use crate::mesh::triangulated::Surface;
 

@@ -1,6 +1,8 @@
-//! JSON laid out for people: a value that fits stands on one line.
+//! JSON that is written: objects whose entries keep their order, laid out for people: a value that fits stands on one line.
 
 use crate::files::json::tree::{Json, Tree};
+use serde::{Serialize, Serializer};
+use serde_json::value::{RawValue, to_raw_value};
 
 /// Columns of a line.
 const WIDTH: usize = 110;
@@ -47,4 +49,61 @@ fn lines(json: Json<'_>, indent: usize, used: usize, text: &mut String) {
     }
     start(text, indent);
     text.push_str(&written[written.len() - 1..]);
+}
+
+/// Names with values: a section of a result, which says the name of a value and where it is from at once, in the order of the file.
+///
+/// ```text
+/// Entries::default()
+///     .with("steps", steps)
+///     .with_some("tolerance", task.tolerance)
+/// ```
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Entries(Vec<(&'static str, Box<RawValue>)>);
+
+impl Entries {
+    /// Adds a value.
+    pub(crate) fn with(mut self, name: &'static str, value: impl Serialize) -> Self {
+        let value = to_raw_value(&value).expect("numbers and words are JSON");
+        self.0.push((name, value));
+        self
+    }
+
+    /// Adds a value where there is one.
+    pub(crate) fn with_some(self, name: &'static str, value: Option<impl Serialize>) -> Self {
+        match value {
+            Some(value) => self.with(name, value),
+            None => self,
+        }
+    }
+
+    /// Adds a list.
+    pub(crate) fn with_each<T: Serialize>(
+        self,
+        name: &'static str,
+        list: impl IntoIterator<Item = T>,
+    ) -> Self {
+        self.with(name, list.into_iter().collect::<Vec<_>>())
+    }
+
+    /// Adds a list that is not empty.
+    pub(crate) fn with_any<T: Serialize>(
+        self,
+        name: &'static str,
+        list: impl IntoIterator<Item = T>,
+    ) -> Self {
+        let list: Vec<_> = list.into_iter().collect();
+        self.with_some(name, Some(list).filter(|list| !list.is_empty()))
+    }
+
+    /// Its text as a file.
+    pub(crate) fn laid_out(&self) -> String {
+        lay_out(&serde_json::to_string(self).expect("names and values are JSON"))
+    }
+}
+
+impl Serialize for Entries {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_map(self.0.iter().map(|(name, value)| (name, value)))
+    }
 }

@@ -1,14 +1,13 @@
 //! JSON text: values with their places, errors that quote them, overrides, the layout of written files.
 //!
-//! - `source`: the bytes of a file, if there is room for them; `tree`: its values with their places in the text; `path`: places by keys.
+//! - `tree`: values with their places in a text; `path`: places by keys.
 //! - `document`: a file with overrides; `scope`: a value with its place, for messages.
 //! - `reader`: values of serde from a tree; `misfit`: those that do not fit, in our words; `either`: values that are written in two ways;
 //!   `objects`: types of objects.
-//! - `error`: mistakes; `set`: overrides of the command line; `entries`, `layout`: objects and lines of what is written.
+//! - `error`: mistakes; `set`: overrides of the command line; `layout`: objects and lines of what is written.
 
 pub(crate) mod document;
 pub mod either;
-pub(crate) mod entries;
 pub mod error;
 pub(crate) mod layout;
 pub(crate) mod misfit;
@@ -17,5 +16,4 @@ pub(crate) mod path;
 pub(crate) mod reader;
 pub(crate) mod scope;
 pub(crate) mod set;
-pub(crate) mod source;
 pub(crate) mod tree;

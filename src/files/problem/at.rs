@@ -40,9 +40,6 @@ impl<'a> Deref for At<'a> {
     }
 }
 
-/// Symbol of an SI unit and its factor.
-pub(crate) type SiUnit = (&'static str, f64);
-
 impl<'a> At<'a> {
     pub(crate) fn new(scope: &Scope<'a>, system: &'a System) -> Self {
         Self {
@@ -163,26 +160,25 @@ impl<'a> At<'a> {
         matches!(self.system.joints[joint].kind, JointKind::Prismatic { .. })
     }
 
-    /// Kind and unit of the coordinate of a joint.
-    pub(crate) fn unit_of(&self, joint: usize) -> (Kind, SiUnit) {
+    /// Kind of the coordinate of a joint.
+    pub(crate) fn kind_of(&self, joint: usize) -> Kind {
         match self.is_prismatic(joint) {
-            true => (Length::kind(), ("m", 1e-3)),
-            false => (Angle::kind(), ("rad", 1.0)),
+            true => Length::kind(),
+            false => Angle::kind(),
         }
     }
 
-    /// Kind and unit of its rate.
-    pub(crate) fn unit_of_rate(&self, joint: usize) -> (Kind, SiUnit) {
+    /// Kind of its rate.
+    pub(crate) fn kind_of_rate(&self, joint: usize) -> Kind {
         match self.is_prismatic(joint) {
-            true => (Velocity::kind(), ("m/s", 1.0)),
-            false => (AngularVelocity::kind(), ("rad/s", 1e3)),
+            true => Velocity::kind(),
+            false => AngularVelocity::kind(),
         }
     }
 
-    /// Kind and unit of the input of a source.
-    pub(crate) fn unit_of_source(&self, source: usize) -> (Kind, SiUnit) {
-        let input = self.sources[source].kind;
-        let kind = match input {
+    /// Kind of the input of a source.
+    pub(crate) fn kind_of_source(&self, source: usize) -> Kind {
+        match self.sources[source].kind {
             InputKind::Voltage => Voltage::kind(),
             InputKind::Force => Force::kind(),
             InputKind::Torque => Torque::kind(),
@@ -190,9 +186,7 @@ impl<'a> At<'a> {
             InputKind::BodyForce => ForceDensity::kind(),
             InputKind::SurfaceCharge => ChargeDensity::kind(),
             InputKind::Charge => Charge::kind(),
-        };
-        let (symbol, size) = input.si();
-        (kind, (symbol, size.recip()))
+        }
     }
 
     /// A value of a joint, in the kind that the joint calls for.

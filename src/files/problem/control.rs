@@ -9,11 +9,11 @@ use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::problem::at::{At, CoordinatesSpec, ELECTRIC_KEYS};
 use crate::files::problem::inputs::{
-    LoadBounds, LoadMap, SOLUTION_PATH, VoltagesSpec, by_source, check_end, check_rest_voltages,
-    load, load_bounds, loads, over_time, voltage_bounds,
+    LoadBounds, LoadMap, SOLUTION_PATH, VoltagesSpec, check_end, check_rest_voltages,
+    given_voltages, load, load_bounds, loads, over_time, voltage_bounds,
 };
 use crate::files::problem::numbers::{FreeMap, SensitivityMap, parameters, with_varied};
-use crate::files::problem::objective::{ObjectiveSpec, objective, with_peak};
+use crate::files::problem::objective::{ObjectiveSpec, objective};
 use crate::files::problem::quantities::keys::{LimitSpec, limits};
 use crate::files::problem::state::{
     Course, GoalSpec, HoldSpec, StartSpec, WaypointSpec, goal_state, sought_hold, start_state,
@@ -24,7 +24,7 @@ use crate::files::solution::SolutionFile;
 use crate::files::study::ChangesSpec;
 use crate::files::units::quantity::{Quantity, Time, Voltage};
 use crate::ipopt::{LinearSolver, OptionValue};
-use crate::math::{Random, Signal};
+use crate::math::Random;
 use crate::model::Graph;
 use crate::model::system::{Fidelity, Muscle, Source, System};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -40,6 +40,9 @@ pub(crate) const MOST_INTERVALS: usize = 1_000_000;
 /// Intervals of the first grid where no number is given.
 const FIRST_INTERVALS: usize = 20;
 
+/// Expected where all voltages are given.
+const A_SOUGHT_INPUT: &str = "at least one voltage that is not given, to be sought, or a constant of the scene under \"free\"";
+
 /// Expected in a problem of one motion for the keys of several.
 const NO_MOTIONS: &str = "none without \"motions\"";
 
@@ -53,13 +56,7 @@ pub(crate) fn control(
     refuse!(if spec.combine.is_some(), at.key("combine");
         found "an objective of several motions", expected NO_MOTIONS);
     let duration = duration(&spec.duration, &at.key("duration"))?;
-    let intervals = match spec.intervals {
-        Some(IntervalsSpec::Given(intervals)) => Some(intervals),
-        Some(IntervalsSpec::Word(IntervalsWord::Auto)) | None => None,
-    };
-    at.optional("intervals", &intervals, |at, intervals| {
-        at.count(*intervals, "interval", MOST_INTERVALS)
-    })?;
+    let intervals = intervals(spec, at)?;
     let takes_voltage = at.sources.iter().any(|source| source.takes_voltage);
     refuse!(if !takes_voltage && spec.load_bounds.is_empty(), at;
         found "a scene without any muscle or electrode that takes a voltage",
@@ -79,9 +76,12 @@ pub(crate) fn control(
     check_end(&loads, &goal, duration, &at.key("loads"))?;
     load(&mut start, &loads, 0.0);
     load(&mut goal, &loads, duration.first());
-    let (mut given, course) = given_voltages(spec, &at.key("voltages"))?;
+    let (mut given, course) = given_voltages(&spec.voltages, duration, &at.key("voltages"))?;
     let is_sought = |s: usize| at.sources[s].takes_voltage && !given.contains_key(&s);
     let seeks_voltage = course.is_none() && (0..at.sources.len()).any(is_sought);
+    let seeks_any = seeks_voltage || !load_bounds.is_empty() || !parameters.is_empty();
+    refuse!(if !seeks_any, at.key("voltages");
+        found "all voltages", expected A_SOUGHT_INPUT);
     let voltage_bounds = voltage_bounds(&spec.voltage_bounds, seeks_voltage, at)?;
     for (key, state) in [("start", &start), ("goal", &goal)] {
         let is_given = |s: usize| course.is_some() || given.contains_key(&s);
@@ -123,6 +123,16 @@ pub(crate) fn control(
     with_varied(control, &spec.sensitivity, scene, &at.key("sensitivity"))
 }
 
+/// The number of intervals that is given.
+fn intervals(spec: &ControlSpec, at: &At<'_>) -> Result<Option<usize>> {
+    let Some(IntervalsSpec::Given(intervals)) = spec.intervals else {
+        return Ok(None);
+    };
+    at.key("intervals")
+        .count(intervals, "interval", MOST_INTERVALS)?;
+    Ok(Some(intervals))
+}
+
 /// The goal; free where none is written and the objective names what to follow or where to end.
 fn goal(spec: &ControlSpec, objective: &Objective, at: &At<'_>) -> Result<BoundaryState> {
     match &spec.goal {
@@ -135,6 +145,15 @@ fn goal(spec: &ControlSpec, objective: &Objective, at: &At<'_>) -> Result<Bounda
         }
         None => Ok(BoundaryState::Free),
     }
+}
+
+/// The problem with the cost of the peak voltage, where that has a weight.
+fn with_peak(mut control: Control, spec: &ObjectiveSpec, at: &At<'_>) -> Result<Control> {
+    let weight = spec.peak_voltage;
+    let is_given = weight > 0.0 && !control.minimise_peak_voltage(weight, at.system);
+    refuse!(if is_given, at.key("peak_voltage");
+        found "a weight where all voltages are given", expected "a voltage that is sought");
+    Ok(control)
 }
 
 pub(crate) fn duration(spec: &DurationSpec, at: &Scope<'_>) -> Result<Duration> {
@@ -150,30 +169,6 @@ pub(crate) fn duration(spec: &DurationSpec, at: &Scope<'_>) -> Result<Duration> 
     refuse!(if guess < min || guess > max, at.key("guess");
         found free.guess, expected format!("a time from {} to {}", free.min, free.max));
     Ok(Duration::Free { min, max, guess })
-}
-
-/// Voltages that are given, source by source or all of them in intervals of time; one is left to be sought, unless a constant of
-/// the scene is sought.
-fn given_voltages(
-    spec: &ControlSpec,
-    at: &At<'_>,
-) -> Result<(BTreeMap<usize, Signal>, Option<Voltages>)> {
-    let (given, course) = match &spec.voltages {
-        VoltagesSpec::Signals(map) => (by_source(map, at)?, None),
-        other => (BTreeMap::new(), Some(over_time(other, at)?)),
-    };
-    let jumps = matches!(course, Some(Voltages::Sampled { .. }));
-    refuse!(if jumps && matches!(spec.duration, DurationSpec::Free(_)), at;
-        found "voltages that jump from interval to interval where the duration is free",
-        expected "functions of time by the names of sources, or a given duration");
-    let is_sought =
-        |s: usize| at.sources[s].takes_voltage && course.is_none() && !given.contains_key(&s);
-    let seeks_load = !spec.load_bounds.is_empty();
-    if (0..at.sources.len()).any(is_sought) || seeks_load || !spec.free.is_empty() {
-        return Ok((given, course));
-    }
-    let expected = "at least one voltage that is not given, to be sought, or a constant of the scene under \"free\"";
-    Err(at.wrong("all voltages", expected))
 }
 
 /// No more final conditions than degrees of freedom, where these can be counted from the joints: nodes bring more.

@@ -25,13 +25,30 @@ pub(crate) const SOLUTION_PATH: &str =
     "the path of a solution.json, or of the folder that holds it";
 
 /// Voltages over time by the names of sources, by source.
-pub(crate) fn by_source(
+fn by_source(
     map: &BTreeMap<String, SignalSpec<Voltage>>,
     at: &At<'_>,
 ) -> Result<BTreeMap<usize, Signal>> {
     at.each_named(map, |name, spec, at| {
         Ok((at.driven(name)?, signal(spec, &Voltage::kind(), at)?))
     })
+}
+
+/// Voltages that are given, source by source or all of them over time.
+pub(crate) fn given_voltages(
+    spec: &VoltagesSpec,
+    duration: Duration,
+    at: &At<'_>,
+) -> Result<(BTreeMap<usize, Signal>, Option<Voltages>)> {
+    if let VoltagesSpec::Signals(map) = spec {
+        return Ok((by_source(map, at)?, None));
+    }
+    let course = over_time(spec, at)?;
+    let jumps = matches!(course, Voltages::Sampled { .. });
+    refuse!(if jumps && matches!(duration, Duration::Free { .. }), at;
+        found "voltages that jump from interval to interval where the duration is free",
+        expected "functions of time by the names of sources, or a given duration");
+    Ok((BTreeMap::new(), Some(course)))
 }
 
 /// Bounds of voltages; needed where one is sought.
@@ -283,8 +300,7 @@ fn find(name: &str, at: &At<'_>) -> Result<(usize, Kind)> {
     let first = at.system.first_load();
     let loads = names(&at.sources[first..], |source| &source.name);
     let index = at.find(name, &loads, "the name of a load")?;
-    let (kind, _) = at.unit_of_source(first + index);
-    Ok((first + index, kind))
+    Ok((first + index, at.kind_of_source(first + index)))
 }
 
 /// Loads over time, by source.

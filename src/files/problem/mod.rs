@@ -1,15 +1,13 @@
 //! The problem file: its types as written and their conversion to a [`Task`](crate::control::problem::Task).
 //!
-//! - `variants`: problems within a problem: motions of a list, scenes of some recordings, parts of a disturbance.
-//! - `build`: the problem; `control` with its `objective`, `simulation`, `identify`: its longer tasks; `channels`: what recordings measure.
-//! - `feedback`: gains along an optimum, and a controller that reads them; `receding`: a problem that it plans anew.
-//! - `at`: places with their system; `state`, `end_of`, `quantities`, `numbers`, `inputs`: their parts; `output`: what is written of a motion.
+//! - `variants`: problems within a problem: motions of a list, scenes of some recordings, parts of a disturbance, what a controller plans anew.
+//! - `build`: the problem; `control` with its `objective`, `simulation`, `identify`: its longer tasks.
+//! - `feedback`: gains along an optimum, and a controller that reads them.
+//! - `at`: places with their system; `state`, `quantities`, `numbers`, `inputs`: their parts; `output`: what is written of a motion.
 
 pub mod at;
 pub mod build;
-mod channels;
 pub mod control;
-mod end_of;
 pub mod feedback;
 pub mod identify;
 pub mod inputs;
@@ -17,7 +15,6 @@ pub mod numbers;
 pub mod objective;
 pub mod output;
 pub mod quantities;
-pub(crate) mod receding;
 pub mod simulation;
 pub mod state;
 pub(crate) mod variants;

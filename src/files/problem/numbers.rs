@@ -7,10 +7,10 @@ use crate::files::json::either::Scalar;
 use crate::files::json::objects::read_objects;
 use crate::files::json::path::{JsonPath, Step};
 use crate::files::json::scope::{Result, Scope, refuse};
-use crate::files::problem::at::{A_SOURCE, At, SiUnit};
+use crate::files::problem::at::{A_SOURCE, At};
 use crate::files::scene::constants::{SceneConstant, WrittenScene};
 use crate::files::units::quantity::{Kind, Length, Quantity, Ratio, SoughtConstant, Time, Voltage};
-use crate::model::{Constant, NotSought, Parameter, SiUnit as UnitOf, check_parameters, unit_of};
+use crate::model::{Constant, NotSought, Parameter, SiUnit, check_parameters, unit_of};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer};
 use serde_json::Value;
@@ -307,7 +307,7 @@ fn of_problem(
         control,
         at,
     };
-    let (of, value, (kind, (symbol, factor))) = place.number()?.ok_or_else(|| {
+    let (of, value, kind) = place.number()?.ok_or_else(|| {
         let found = format!("{path:?}, which is no number of the problem that is offered");
         at.wrong(found, OFFERED)
     })?;
@@ -317,17 +317,18 @@ fn of_problem(
         Some(ToleranceSpec::Size(size)) => Some(at.key("tolerance").value_as(size, &kind)?),
     };
     check_tolerance(tolerance, at)?;
+    let (symbol, factor) = kind.unit();
     Ok(Varied {
         name: path.to_owned(),
         of,
         value,
         tolerance,
-        unit: UnitOf { symbol, factor },
+        unit: SiUnit { symbol, factor },
     })
 }
 
-/// A number of the problem, its value and its unit.
-type Number = (VariedOf, f64, (Kind, SiUnit));
+/// A number of the problem, its value and its kind.
+type Number = (VariedOf, f64, Kind);
 
 /// A path in `control`, and what it may lead to.
 struct Place<'a> {
@@ -366,26 +367,23 @@ impl Place<'_> {
         let objective = &self.control.objective;
         Ok(match (self.key(0), self.key(1)) {
             ("duration", "") => match self.control.duration {
-                Duration::Given(given) => {
-                    Some((VariedOf::Duration, given, (Time::kind(), ("s", 1e-3))))
-                }
+                Duration::Given(given) => Some((VariedOf::Duration, given, Time::kind())),
                 Duration::Free { .. } => None,
             },
             ("objective", "effort") => weight(objective.effort, WeightOf::Effort),
             ("objective", "rate") => weight(objective.rate, WeightOf::Rate),
             ("objective", "duration") => weight(objective.duration, WeightOf::Duration),
             ("voltage_bounds", "") => self.index().filter(|side| *side < 2).map(|side| {
-                let unit = (Voltage::kind(), ("V", 1.0));
                 let bound = self.control.voltage_bounds[side];
-                (VariedOf::VoltageBound(side), bound, unit)
+                (VariedOf::VoltageBound(side), bound, Voltage::kind())
             }),
             ("load_bounds", name) => {
                 let source = self.at.source(name, "the name of a load")?;
                 let bounds = self.control.load_bounds.get(&source);
                 let side = self.index().filter(|side| *side < 2);
                 bounds.zip(side).map(|(bounds, side)| {
-                    let unit = self.at.unit_of_source(source);
-                    (VariedOf::LoadBound(source, side), bounds[side], unit)
+                    let kind = self.at.kind_of_source(source);
+                    (VariedOf::LoadBound(source, side), bounds[side], kind)
                 })
             }
             ("goal", key) => self.of_goal(key)?,
@@ -399,9 +397,9 @@ impl Place<'_> {
         Ok(match (key, &self.control.goal) {
             ("joint_angles", BoundaryState::JointAngles { angles, .. }) => {
                 let joint = self.at.joint(&self.name())?;
-                let unit = self.at.unit_of(joint);
+                let kind = self.at.kind_of(joint);
                 let value = angles.get(&joint);
-                value.map(|value| (VariedOf::GoalJoint(joint), *value, unit))
+                value.map(|value| (VariedOf::GoalJoint(joint), *value, kind))
             }
             ("rest_at_voltages", BoundaryState::RestAtVoltages(voltages, _)) => {
                 Some(self.voltage(voltages, VariedOf::GoalVoltage)?)
@@ -412,8 +410,7 @@ impl Place<'_> {
                 let mut given = given.flat_map(|place| place.given());
                 let given = given.find(|(axis, _)| Some(*axis) == self.index());
                 given.map(|(axis, value)| {
-                    let unit = (Length::kind(), ("m", 1e-3));
-                    (VariedOf::GoalPlace { marker, axis }, value, unit)
+                    (VariedOf::GoalPlace { marker, axis }, value, Length::kind())
                 })
             }
             _ => None,
@@ -424,12 +421,12 @@ impl Place<'_> {
     fn of_start(&self, key: &str) -> Result<Option<Number>> {
         let of_joint = |values: &BTreeMap<usize, f64>, of: fn(usize) -> VariedOf| {
             let joint = self.at.joint(&self.name())?;
-            let unit = match key {
-                "joint_rates" => self.at.unit_of_rate(joint),
-                _ => self.at.unit_of(joint),
+            let kind = match key {
+                "joint_rates" => self.at.kind_of_rate(joint),
+                _ => self.at.kind_of(joint),
             };
             let value = values.get(&joint).copied().unwrap_or(0.0);
-            Ok(Some((of(joint), value, unit)))
+            Ok(Some((of(joint), value, kind)))
         };
         match (key, &self.control.start) {
             ("joint_angles", BoundaryState::JointAngles { angles, .. }) => {
@@ -448,13 +445,13 @@ impl Place<'_> {
     /// A voltage or load at rest.
     fn voltage(&self, voltages: &[f64], of: fn(usize) -> VariedOf) -> Result<Number> {
         let source = self.at.source(&self.name(), A_SOURCE)?;
-        Ok((of(source), voltages[source], self.at.unit_of_source(source)))
+        Ok((of(source), voltages[source], self.at.kind_of_source(source)))
     }
 }
 
 /// A weight of the objective.
 fn weight(value: f64, of: WeightOf) -> Option<Number> {
-    Some((VariedOf::Weight(of), value, (Ratio::kind(), ("", 1.0))))
+    Some((VariedOf::Weight(of), value, Ratio::kind()))
 }
 
 read_objects! {

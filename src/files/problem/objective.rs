@@ -1,6 +1,6 @@
 //! The objective of a control problem.
 
-use crate::control::problem::{Control, EnergyCost, Objective, SourceEnergy};
+use crate::control::problem::{EnergyCost, Objective, SourceEnergy};
 use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, refuse};
 use crate::files::problem::at::At;
@@ -98,19 +98,6 @@ pub(crate) fn objective(spec: &ObjectiveSpec, at: &At<'_>) -> Result<Objective> 
         quantities,
         energies: of_sources,
     })
-}
-
-/// The problem with the cost of the peak voltage, where that has a weight.
-pub(crate) fn with_peak(
-    mut control: Control,
-    spec: &ObjectiveSpec,
-    at: &At<'_>,
-) -> Result<Control> {
-    let weight = spec.peak_voltage;
-    let is_given = weight > 0.0 && !control.minimise_peak_voltage(weight, at.system);
-    refuse!(if is_given, at.key("peak_voltage");
-        found "a weight where all voltages are given", expected "a voltage that is sought");
-    Ok(control)
 }
 
 /// Names that an energy may have, for messages: the charge of an electrode of finite elements is not known at instants.

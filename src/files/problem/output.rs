@@ -16,7 +16,7 @@ pub struct Output {
     pub quantities: Option<Vec<String>>,
 }
 
-/// Whether a column of a system is of a kind, by its name.
+/// Test of a column of a system by its name.
 type IsOfKind = fn(&str, &System) -> bool;
 
 /// Words for columns of one kind.

@@ -1,28 +1,30 @@
-//! States of a problem file at the start, at the end and on the way, and their conversion to indices, places, orientations and one voltage
-//! per source.
+//! States of a problem file at the start, at the end, on the way and at the end of another result, and their conversion to indices, places,
+//! orientations and one voltage per source.
 
+use crate::control::EndState;
 use crate::control::problem::{
     BoundaryState, Duration, Hold, Orientation, Place, QuantityCost, Rest, SoughtHold, Waypoint,
 };
+use crate::dynamics::StepState;
+use crate::files::continuation;
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::{Result, Scope, refuse, the_one};
+use crate::files::json::scope::{Result, Scope, list, refuse, the_one};
 use crate::files::problem::at::{At, VoltageMap};
-use crate::files::problem::end_of::end_of;
+use crate::files::scene::names::names;
 use crate::files::scene::point::{PartialPoint, unit_axis, vector};
+use crate::files::solution::{Body, ConfigurationRecord, record};
 use crate::files::units::quantity::{
     Angle, AngularVelocity, JointCoordinate, JointRate, Length, Quantity, Time, Velocity,
 };
-use crate::math::shortest;
-use crate::model::Graph;
+use crate::kinematics::Pose;
+use crate::math::{Matrix, Vector, shortest};
+use crate::model::{Coordinates, Graph};
 use nalgebra::Vector3;
-use std::collections::BTreeMap;
-
-/// The ways to write a start.
-enum Written<'a> {
-    Rest(&'a VoltageMap),
-    EndOf(&'a str),
-    Joints,
-}
+use serde::Deserialize;
+use serde::de::IgnoredAny;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
 
 /// A state at the start.
 pub(crate) fn start_state(spec: &StartSpec, at: &At<'_>) -> Result<BoundaryState> {
@@ -33,26 +35,24 @@ pub(crate) fn start_state(spec: &StartSpec, at: &At<'_>) -> Result<BoundaryState
         () if spec.joint_rates.is_some() => "joint_rates",
         () => "body_velocities",
     };
-    let (rest, end) = (spec.rest_at_voltages.as_ref(), spec.end_of.as_ref());
-    match at.exactly_one([
-        ("rest_at_voltages", rest.map(Written::Rest)),
-        ("end_of", end.map(|path| Written::EndOf(path))),
-        (joints, moving.then_some(Written::Joints)),
-    ])? {
-        Written::Rest(map) => {
-            let row = at.key("rest_at_voltages").voltages(map)?;
-            Ok(BoundaryState::RestAtVoltages(row, Rest::Everything))
-        }
-        Written::EndOf(path) => {
-            let end = end_of(path, &at.key("end_of"))?;
-            Ok(BoundaryState::EndOf(Box::new(end)))
-        }
-        Written::Joints => Ok(BoundaryState::JointAngles {
-            angles: at.key("joint_angles").by_joint(&spec.joint_angles)?,
-            rates: at.key("joint_rates").by_joint(&spec.joint_rates)?,
-            velocities: velocities(&spec.body_velocities, &at.key("body_velocities"))?,
-        }),
+    at.one_key([
+        ("rest_at_voltages", spec.rest_at_voltages.is_some()),
+        ("end_of", spec.end_of.is_some()),
+        (joints, moving),
+    ])?;
+    if let Some(map) = &spec.rest_at_voltages {
+        let row = at.key("rest_at_voltages").voltages(map)?;
+        return Ok(BoundaryState::RestAtVoltages(row, Rest::Everything));
     }
+    if let Some(path) = &spec.end_of {
+        let end = end_of(path, &at.key("end_of"))?;
+        return Ok(BoundaryState::EndOf(Box::new(end)));
+    }
+    Ok(BoundaryState::JointAngles {
+        angles: at.key("joint_angles").by_joint(&spec.joint_angles)?,
+        rates: at.key("joint_rates").by_joint(&spec.joint_rates)?,
+        velocities: velocities(&spec.body_velocities, &at.key("body_velocities"))?,
+    })
 }
 
 /// Velocities at the start of bodies that joints leave free to have them.
@@ -67,14 +67,11 @@ fn velocities(
         let body = place.body(name)?;
         if !floating.contains(&body) && !turning.contains(&body) {
             let found = format!("{name:?}, whose motion follows from its joints");
-            let free = floating
-                .iter()
-                .chain(&turning)
-                .map(|&b| format!("{:?}", at.system.bodies[b].name));
-            let free: Vec<String> = free.collect();
+            let bodies = names(&at.system.bodies, |body| &body.name);
+            let free = list(floating.iter().chain(&turning).map(|&b| &bodies[b]));
             let expected = match free.is_empty() {
                 true => "\"joint_rates\", as no body is free".to_owned(),
-                false => format!("one of {}, and \"joint_rates\" of others", free.join(", ")),
+                false => format!("one of {free}, and \"joint_rates\" of others"),
             };
             return Err(place.wrong(found, expected));
         }
@@ -446,4 +443,153 @@ impl WaypointSpec {
             false => Err(at.key(key).wrong(found, expected)),
         }
     }
+}
+
+/// Expected value of a path.
+const FOLDER: &str = "the folder of a simulation or of a solved control problem, which holds a solution.json; a state of rest is \"rest_at_voltages\"";
+/// Program that writes the expected file.
+const WRITTEN: &str = "a result that simulate or solve wrote";
+/// Status of solves whose solution is a motion of the robot.
+const SOLVED: [&str; 4] = ["solved", "acceptable", "feasible_point", "not_held"];
+/// Status of a simulation that came to its end; others go as far as they go.
+const SIMULATED: &str = "simulated";
+
+/// Entries that are read of a summary.
+#[derive(Deserialize)]
+struct Summary {
+    status: String,
+    /// Of a simulation.
+    #[serde(default)]
+    steps: Option<IgnoredAny>,
+}
+
+/// The last instant of the result that a path names.
+pub(crate) fn end_of(path: &str, at: &At<'_>) -> Result<EndState> {
+    let file = at.solution_file(path, FOLDER)?;
+    let notes = status(&file, at)?;
+    let (document, ended) = record(&file, |name| !name.starts_with("costates/"))?;
+    let configuration = ended.configuration;
+    let configuration =
+        configuration.ok_or_else(|| Scope::of(&document).missing_key("configuration"))?;
+    let (voltages, loads) = (
+        ended.voltages.unwrap_or_default(),
+        ended.loads.unwrap_or_default(),
+    );
+    check_names(&configuration, voltages.keys(), path, at)?;
+    let untold = |what: &str| at.wrong(format!("{path:?}, which does not tell {what}"), WRITTEN);
+    let coordinates = ended.coordinates.as_deref().and_then(Coordinates::named);
+    let coordinates = coordinates.ok_or_else(|| untold("in which \"coordinates\" it is"))?;
+    let mut state = ended
+        .state
+        .ok_or_else(|| untold("the \"state\" of its motion"))?;
+    let z = state.z.pop().ok_or_else(|| untold("\"state.z\""))?;
+    if state.momentum.is_empty() != z.is_empty() {
+        return Err(untold("the \"state.momentum\" at its end"));
+    }
+    let mut poses = Vec::new();
+    for body in &at.system.bodies {
+        let Body { centre, directors } = &configuration.bodies[&body.name];
+        let (Some(centre), Some(directors)) = (centre.last(), directors.last()) else {
+            return Err(untold(&format!("where body {:?} ended", body.name)));
+        };
+        poses.push(Pose {
+            centre: Vector::from(*centre) * 1e3,
+            directors: Matrix::from(*directors),
+        });
+    }
+    let mut inputs = Vec::new();
+    for source in at.sources.iter() {
+        let held = ended.hold.as_ref().and_then(|hold| hold.get(&source.name));
+        let all = if source.is_load() { &loads } else { &voltages };
+        let last = all.get(&source.name).and_then(|list| list.last());
+        let (_, unit) = source.kind.si();
+        inputs.push(held.or(last).copied().unwrap_or(0.0) * unit);
+    }
+    Ok(EndState {
+        source: file.parent().unwrap_or(&file).to_owned(),
+        coordinates,
+        method: method(&file, &z, &state.momentum, at)?,
+        z,
+        momentum: state.momentum,
+        poses,
+        meshes: state.meshes_mm,
+        voltages: inputs,
+        notes,
+    })
+}
+
+/// Refuses a result that is no motion, and returns notes on one that is.
+fn status(file: &Path, at: &Scope<'_>) -> Result<Vec<String>> {
+    let beside = file.with_file_name("summary.json");
+    let shown = file.display();
+    let text = fs::read_to_string(&beside).ok();
+    let summary = text.and_then(|text| serde_json::from_str::<Summary>(&text).ok());
+    let Some(Summary { status, steps }) = summary else {
+        return Ok(vec![format!(
+            "no summary.json beside {shown} tells whether it is a motion of the robot"
+        )]);
+    };
+    match (steps.is_some(), status.as_str()) {
+        (true, SIMULATED) => Ok(Vec::new()),
+        (true, _) => Ok(vec![format!(
+            "{shown} ended early ({status}); the motion starts where it ended"
+        )]),
+        (false, word) if SOLVED.contains(&word) => Ok(Vec::new()),
+        (false, _) => {
+            let found = format!("{shown}, whose status is {status:?}");
+            Err(at.wrong(
+                found,
+                format!(
+                    "a motion of the robot: a simulation, or one of {}",
+                    list(SOLVED.iter())
+                ),
+            ))
+        }
+    }
+}
+
+/// Refuses a result of other bodies, joints or sources.
+fn check_names<'v>(
+    configuration: &ConfigurationRecord,
+    mut voltages: impl Iterator<Item = &'v String>,
+    path: &str,
+    at: &At<'_>,
+) -> Result<()> {
+    let ConfigurationRecord { bodies, joints } = configuration;
+    let own_bodies: BTreeSet<_> = at.system.bodies.iter().map(|body| &body.name).collect();
+    let own_joints = at.system.joints.iter().filter(|one| one.has_coordinate());
+    let own_joints = own_joints.map(|joint| &joint.name).collect();
+    for (kind, there, here) in [
+        ("body", bodies.keys().collect::<BTreeSet<_>>(), own_bodies),
+        ("joint", joints.keys().collect(), own_joints),
+    ] {
+        refuse!(if let Some(name) = here.difference(&there).next(), at;
+            found format!("{path:?}, which has no {kind} {name:?}"),
+            expected "a result of the same robot");
+        refuse!(if let Some(name) = there.difference(&here).next(), at;
+            found format!("{path:?}, whose {kind} {name:?} is not in the scene"),
+            expected "a result of the same robot");
+    }
+    let unknown = voltages.find(|name| !at.sources.iter().any(|source| source.name == **name));
+    refuse!(if let Some(name) = unknown, at;
+        found format!("{path:?}, whose muscle or electrode {name:?} is not in the scene"),
+        expected "a result of the same robot");
+    Ok(())
+}
+
+/// The state of the method of a simulation; of a solve none is kept.
+fn method(file: &Path, z: &[f64], momentum: &[f64], at: &Scope<'_>) -> Result<StepState> {
+    let beside = file.with_file_name("continuation.npz");
+    if !beside.is_file() {
+        return Ok(StepState::default());
+    }
+    let shown = beside.display();
+    let read = continuation::read(&beside);
+    let read = read.map_err(|error| at.wrong(format!("{shown}: {error}"), WRITTEN))?;
+    let discrete = read.discrete;
+    let ends = [&discrete.z, &discrete.momenta].map(|rows| rows.last().map(Vec::as_slice));
+    refuse!(if ends != [Some(z), Some(momentum)], at;
+        found format!("{shown}, which is not of the motion in {}", file.display()),
+        expected "files of one run");
+    Ok(discrete.end.begun_anew())
 }

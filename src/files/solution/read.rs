@@ -7,10 +7,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 use crate::control::{Costates, EarlierSolution, Solution};
-use crate::files::json::document::Document;
+use crate::files::json::document::{Document, NoBytes, check_json, of_file, unmarked};
 use crate::files::json::error::SceneError;
 use crate::files::json::scope::Scope;
-use crate::files::json::source::{NoBytes, check_json, of_file, unmarked};
 use crate::files::json::tree::Tree;
 use crate::files::solution::arrays::complete;
 use crate::files::solution::record::{
@@ -87,8 +86,13 @@ fn parse(path: &Path, model: &Model) -> Result<Solution> {
     check_times(&file.time)?;
     let (system, instants) = (&model.system, file.time.len());
     let by_joint = joint_columns(&file, system)?;
-    let by_source = voltage_columns(file.voltages.as_ref(), model)?;
-    let loads = load_columns(file.loads.as_ref(), model)?;
+    let by_source = file.voltages.as_ref().ok_or_else(|| Reason::NoSolution {
+        place: ".".to_owned(),
+        found: "missing field `voltages`".to_owned(),
+    })?;
+    same_inputs(0, by_source, model)?;
+    let loads = file.loads.clone().unwrap_or_default();
+    same_inputs(1, &loads, model)?;
     let joints = joint_rows(by_joint, system, instants)?;
     let voltages = input_rows([by_source, &loads], model, instants - 1)?;
     let loads = file.hold_loads.as_ref();
@@ -145,17 +149,7 @@ fn joint_columns<'f>(file: &'f SolutionRecord, system: &System) -> Result<&'f Co
     };
     let named = |joint: &&Joint| joint.has_coordinate();
     let joints = system.joints.iter().filter(named).map(|j| j.name.as_str());
-    same_names("joint", columns.keys().map(String::as_str), joints)?;
-    Ok(columns)
-}
-
-/// Voltages by muscle and electrode, one column for each source that the voltages of the scene reach.
-fn voltage_columns<'f>(columns: Option<&'f Columns>, model: &Model) -> Result<&'f Columns> {
-    let columns = columns.ok_or_else(|| Reason::NoSolution {
-        place: ".".to_owned(),
-        found: "missing field `voltages`".to_owned(),
-    })?;
-    same_inputs(0, columns, model)?;
+    same_names("joint", columns.keys(), joints)?;
     Ok(columns)
 }
 
@@ -171,13 +165,6 @@ fn joint_rows(columns: &Columns, system: &System, instants: usize) -> Result<Vec
         }
     }
     Ok(rows)
-}
-
-/// Loads by their names, one column for each that acts in the scene.
-fn load_columns(columns: Option<&Columns>, model: &Model) -> Result<Columns> {
-    let columns = columns.cloned().unwrap_or_default();
-    same_inputs(1, &columns, model)?;
-    Ok(columns)
 }
 
 /// Voltages and loads by interval and source.
@@ -295,11 +282,7 @@ fn poses(
         return Ok(Vec::new());
     };
     let names = system.bodies.iter().map(|body| body.name.as_str());
-    same_names(
-        "body",
-        configuration.bodies.keys().map(String::as_str),
-        names,
-    )?;
+    same_names("body", configuration.bodies.keys(), names)?;
     let mut poses = vec![vec![Pose::GROUND; system.bodies.len()]; instants];
     for (b, body) in system.bodies.iter().enumerate() {
         let Body { centre, directors } = &configuration.bodies[&body.name];
@@ -323,17 +306,19 @@ fn same_inputs<T>(kind: usize, columns: &BTreeMap<String, T>, model: &Model) -> 
     let inputs = model.reached.iter().map(|&s| &model.sources[s]);
     let inputs = inputs.filter(|source| usize::from(source.is_load()) == kind);
     let inputs = inputs.map(|source| source.name.as_str());
-    same_names(KINDS[kind], columns.keys().map(String::as_str), inputs)
+    same_names(KINDS[kind], columns.keys(), inputs)
 }
 
 fn same_names<'a>(
     what: &str,
-    file: impl Iterator<Item = &'a str>,
+    file: impl Iterator<Item = &'a String>,
     scene: impl Iterator<Item = &'a str>,
 ) -> Result<()> {
     let (file, scene): (Vec<_>, Vec<_>) = (file.collect(), scene.collect());
-    let unknown = file.iter().find(|name| !scene.contains(name));
-    let missing = scene.iter().find(|name| !file.contains(name));
+    let unknown = file.iter().find(|name| !scene.contains(&name.as_str()));
+    let missing = scene
+        .iter()
+        .find(|name| !file.iter().any(|one| one.as_str() == **name));
     match (unknown, missing) {
         (None, None) => Ok(()),
         (Some(name), _) => Err(Reason::OtherScene(format!(

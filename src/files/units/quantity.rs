@@ -47,6 +47,12 @@ impl Kind {
         self.units[0]
     }
 
+    /// The SI unit, and its factor from the unit inside.
+    pub(crate) fn unit(&self) -> (&'static str, f64) {
+        let factor = scale(1.0, -self.dimensions[0].internal_exponent());
+        (self.symbol(), factor)
+    }
+
     /// Symbol of its SI unit of this dimension.
     fn symbol_of(&self, dimension: Dimension) -> Option<&'static str> {
         let own = self.dimensions.iter().position(|one| *one == dimension)?;

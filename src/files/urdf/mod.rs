@@ -17,7 +17,7 @@ pub use scene::FromUrdf;
 use roxmltree::Document;
 use std::path::Path;
 
-use crate::files::json::source::{NoBytes, of_file};
+use crate::files::json::document::{NoBytes, of_file};
 use crate::files::urdf::element::{LeftOut, Result};
 
 /// Reads a file.

@@ -3,7 +3,7 @@
 use crate::control::problem::{CostFunction, Limit};
 use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, refuse};
-use crate::files::problem::at::{At, SiUnit};
+use crate::files::problem::at::At;
 use crate::files::scene::point::{Point, unit_axis, vector};
 use crate::files::units::quantity::{Kind, PhysicalQuantity, Quantity as Written};
 use crate::math::Signal;
@@ -90,30 +90,22 @@ pub(super) struct Named<'a> {
 
 impl Named<'_> {
     /// The quantity, called by a word and the name of what it is of.
-    pub(super) fn recorded(
-        &self,
-        word: &str,
-        quantity: Quantity,
-        unit: (Kind, SiUnit),
-    ) -> Recorded {
-        let (kind, unit) = unit;
+    pub(super) fn recorded(&self, word: &str, quantity: Quantity, kind: Kind) -> Recorded {
         Recorded {
             of: self.name.to_owned(),
             name: format!("{word} of {}", self.name),
             parts: vec![(1.0, quantity)],
             kind,
-            unit,
         }
     }
 }
 
-/// A recorded quantity: what it is of, or its column where one is written; what it is called, its parts, and its unit.
+/// A recorded quantity: what it is of, or its column where one is written; what it is called, its parts, and its kind.
 pub(in crate::files::problem) struct Recorded {
     pub(in crate::files::problem) of: String,
     pub(in crate::files::problem) name: String,
     pub(in crate::files::problem) parts: Vec<(f64, Quantity)>,
     pub(in crate::files::problem) kind: Kind,
-    pub(in crate::files::problem) unit: SiUnit,
 }
 
 /// Limits of some quantities by the same bounds.

@@ -2,7 +2,7 @@
 
 use crate::control::problem::Limit;
 use crate::files::json::scope::{Result, Scope, refuse};
-use crate::files::problem::at::{At, SiUnit};
+use crate::files::problem::at::At;
 use crate::files::problem::inputs::SOLUTION_PATH;
 use crate::files::problem::quantities::entry::{
     Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, costs, limits, limits_of,
@@ -79,7 +79,7 @@ costs! {
         pub along: SignalSpec<JointCoordinate>,
     } weight of "∫ (θ − r)² dt in rad² s, or mm² s of a prismatic joint" => |of, at| {
         let joint = at.key("joint").coordinate(&of.joint)?;
-        let (kind, _) = at.unit_of(joint);
+        let kind = at.kind_of(joint);
         let reference = signal(&of.along, &kind, &at.key("along"))?;
         vec![square(Quantity::joint(joint, 0.0), reference)]
     };
@@ -152,24 +152,22 @@ pub(super) fn coordinate(of: &Named<'_>) -> Result<Recorded> {
     let quantity = Quantity::joint(joint, 0.0);
     Ok(Recorded {
         name: of.name.to_owned(),
-        ..of.recorded("coordinate", quantity, of.at.unit_of(joint))
+        ..of.recorded("coordinate", quantity, of.at.kind_of(joint))
     })
 }
 
 pub(super) fn rate(of: &Named<'_>) -> Result<Recorded> {
     let joint = of.place.coordinate(of.name)?;
     let quantity = Quantity::joint_rate(joint);
-    Ok(of.recorded("rate", quantity, of.at.unit_of_rate(joint)))
+    Ok(of.recorded("rate", quantity, of.at.kind_of_rate(joint)))
 }
 
 pub(super) fn reaction_force(of: &Named<'_>) -> Result<Recorded> {
-    let unit = (Force::kind(), ("N", 1.0));
-    reaction(of, Reaction::Force, of.along, unit)
+    reaction(of, Reaction::Force, of.along, Force::kind())
 }
 
 pub(super) fn reaction_torque(of: &Named<'_>) -> Result<Recorded> {
-    let unit = (Torque::kind(), ("N m", 1e-3));
-    reaction(of, Reaction::Torque, of.about, unit)
+    reaction(of, Reaction::Torque, of.about, Torque::kind())
 }
 
 /// Force or torque that a joint transmits along a direction.
@@ -177,7 +175,7 @@ fn reaction(
     named: &Named<'_>,
     of: Reaction,
     along: Option<[f64; 3]>,
-    unit: (Kind, SiUnit),
+    kind: Kind,
 ) -> Result<Recorded> {
     let (word, key) = match of {
         Reaction::Force => ("force", "along"),
@@ -186,7 +184,7 @@ fn reaction(
     let joint = transmitting(named.name, of, named.place)?;
     let along = written_direction(along, &named.at.key(key))?;
     let quantity = Quantity::jump(What::Reaction { joint, of, along }, 1.0, 1.0);
-    Ok(named.recorded(word, quantity, unit))
+    Ok(named.recorded(word, quantity, kind))
 }
 
 /// The unit vector of a direction that has to be written.
@@ -220,7 +218,7 @@ pub(crate) fn read_solution_joints(path: &Path, system: &System) -> Result<Vec<(
         refuse!(if values.len() != times.len(), place;
             found format!("{} values", values.len()),
             expected format!("{}, one for each instant", times.len()));
-        let (_, (_, si)) = place.unit_of(joint);
+        let (_, si) = place.kind_of(joint).unit();
         let values = values.into_iter().map(|value| si.recip() * value);
         let values = values.collect();
         let times = times.clone();

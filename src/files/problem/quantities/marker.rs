@@ -188,7 +188,6 @@ pub(super) fn place(of: &Named<'_>) -> Result<Recorded> {
         name: of.name.to_owned(),
         parts: along.map(part).collect(),
         kind: Length::kind(),
-        unit: ("m", 1e-3),
     })
 }
 
@@ -201,5 +200,5 @@ pub(super) fn distance(of: &Named<'_>) -> Result<Recorded> {
     };
     let plane = of.from.ok_or_else(missing)?.plane(&place)?;
     let quantity = Quantity::of(What::Clearance { marker, plane });
-    Ok(of.recorded("clearance", quantity, (Length::kind(), ("m", 1e-3))))
+    Ok(of.recorded("clearance", quantity, Length::kind()))
 }

@@ -2,7 +2,7 @@
 
 use crate::control::problem::{CostFunction, During, Limit, QuantityCost};
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::{Result, Scope, refuse};
+use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::problem::at::{At, ELECTRIC_KEYS};
 use crate::files::problem::quantities::entry::{
     All, Cost, CostEntry, LimitEntry, Named, Recorded, bounds, bounds_by, costs, limits, limits_of,
@@ -112,10 +112,12 @@ costs! {
 
 const EXPECTED: &str = "a lumped muscle";
 
-/// Places of the lumped muscles in the list of all.
-fn lumped(at: &At<'_>) -> Vec<usize> {
+/// Places of the lumped muscles in the list of all: one or more.
+fn all_lumped(at: &At<'_>) -> Result<Vec<usize>> {
     let is_lumped = |&m: &usize| at.system.muscles[m].fidelity == Fidelity::Lumped;
-    (0..at.system.muscles.len()).filter(is_lumped).collect()
+    let muscles: Vec<usize> = (0..at.system.muscles.len()).filter(is_lumped).collect();
+    refuse!(if muscles.is_empty(), at; found "no lumped muscle", expected EXPECTED);
+    Ok(muscles)
 }
 
 /// The lumped muscle of a name that stands here.
@@ -136,32 +138,21 @@ fn lumped_muscles(
     at: &At<'_>,
 ) -> Result<Vec<usize>> {
     let one = muscle.as_ref().map(Some);
-    let muscles = match at.exactly_one([("muscle", one), ("muscles", muscles.map(|_| None))])? {
-        None => lumped(at),
-        Some(name) => vec![lumped_muscle(name, &at.key("muscle"))?],
-    };
-    refuse!(if muscles.is_empty(), at.key("muscles"); found "no lumped muscle", expected EXPECTED);
-    Ok(muscles)
+    match at.exactly_one([("muscle", one), ("muscles", muscles.map(|_| None))])? {
+        None => all_lumped(&at.key("muscles")),
+        Some(name) => Ok(vec![lumped_muscle(name, &at.key("muscle"))?]),
+    }
 }
 
 impl LimitEntry for TensionLimitSpec {
     fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
         let bounds = bounds([&self.min, &self.max], at)?;
-        let key = at.one_key([
-            ("muscle", self.muscle.is_some()),
-            ("muscles", self.muscles.is_some()),
-            ("spring", self.spring.is_some()),
-            ("tendon", self.tendon.is_some()),
-        ])?;
-        let place = at.key(key);
-        let parts = match (&self.spring, &self.tendon) {
-            (Some(name), _) => vec![Pulling::Spring(place.spring(name)?)],
-            (None, Some(name)) => vec![Pulling::Tendon(place.tendon(name)?)],
-            (None, None) => {
-                let muscles = lumped_muscles(&self.muscle, self.muscles, at)?;
-                muscles.into_iter().map(Pulling::Muscle).collect()
-            }
-        };
+        let parts = the_one!(at, self;
+            "muscle" muscle |at, name| vec![Pulling::Muscle(lumped_muscle(name, at)?)];
+            "muscles" muscles |at, _| all_lumped(at)?.into_iter().map(Pulling::Muscle).collect();
+            "spring" spring |at, name| vec![Pulling::Spring(at.spring(name)?)];
+            "tendon" tendon |at, name| vec![Pulling::Tendon(at.tendon(name)?)];
+        );
         Ok(limits_of(parts.into_iter().map(What::Tension), bounds))
     }
 }
@@ -175,27 +166,22 @@ const NOTHING: &str = "nothing that a field reaches";
 impl LimitEntry for ElectricFieldLimitSpec {
     fn limits(&self, at: &At<'_>) -> Result<Vec<Limit>> {
         let max = at.key("max").positive(&self.max)?;
-        let key = at.one_key([
-            ("muscle", self.muscle.is_some()),
-            ("muscles", self.muscles.is_some()),
-            ("solid", self.solid.is_some()),
-            ("solids", self.solids.is_some()),
-        ])?;
-        refuse!(if self.region.is_some() && key != "solid", at.key("region");
+        let is_misplaced = self.region.is_some() && self.solid.is_none();
+        refuse!(if is_misplaced, at.key("region");
             found "a region without \"solid\"", expected "a region of one block");
-        let place = at.key(key);
-        let fields = match (key, &self.solid) {
-            ("muscle" | "muscles", _) => muscle_fields(self.muscle.as_ref(), &place)?,
-            (_, Some(name)) => {
+        let fields = the_one!(at, self;
+            "muscle" muscle |at, name| muscle_fields(Some(name), at)?;
+            "muscles" muscles |at, _| muscle_fields(None, at)?;
+            "solid" solid |place, name| {
                 let block = place.solid(name)?;
                 let regions = &at.system.solids[block].mesh.region_names;
                 let region = at.optional("region", &self.region, |at, name| {
                     at.find(name, regions, "the name of a region")
                 });
-                block_fields(vec![block], region?, &place)?
-            }
-            (_, None) => block_fields((0..at.system.solids.len()).collect(), None, &place)?,
-        };
+                block_fields(vec![block], region?, place)?
+            };
+            "solids" solids |at, _| block_fields((0..at.system.solids.len()).collect(), None, at)?;
+        );
         let limit = |field| Limit::below(What::Field(field), max);
         Ok(fields.into_iter().map(limit).collect())
     }
@@ -291,8 +277,7 @@ pub(super) fn tension(of: &Named<'_>) -> Result<Recorded> {
     let (_, part, without) = parts[of.place.find(name, &names, EXPECTED)?];
     refuse!(if let Some(without) = without, of.place;
         found format!("{name:?}, {without}"), expected EXPECTED);
-    let unit = (Force::kind(), ("N", 1.0));
-    Ok(of.recorded("tension", Quantity::tension(part), unit))
+    Ok(of.recorded("tension", Quantity::tension(part), Force::kind()))
 }
 
 /// Limits of an amount of muscles.
@@ -341,8 +326,7 @@ fn has(amount: Amount, muscle: usize, at: &At<'_>) -> bool {
 
 /// All lumped muscles, of which one at least has the amount.
 fn all_with(amount: Amount, at: &At<'_>) -> Result<Vec<usize>> {
-    let muscles = lumped(at);
-    refuse!(if muscles.is_empty(), at; found "no lumped muscle", expected EXPECTED);
+    let muscles = all_lumped(at)?;
     refuse!(if !muscles.iter().any(|&m| has(amount, m, at)), at;
         found "muscles without a density",
         expected "a \"density\" of the material of a lumped muscle");

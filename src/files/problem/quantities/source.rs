@@ -2,7 +2,7 @@
 
 use crate::control::problem::Limit;
 use crate::files::json::scope::{Result, refuse};
-use crate::files::problem::at::{At, SiUnit};
+use crate::files::problem::at::At;
 use crate::files::problem::quantities::entry::{
     All, Cost, CostEntry, LimitEntry, Named, Recorded, bounds, costs, limits, squares,
 };
@@ -164,13 +164,13 @@ fn known(
     named: &Named<'_>,
     word: &str,
     quantity: Result<Quantity, [&str; 2]>,
-    unit: (Kind, SiUnit),
+    kind: Kind,
 ) -> Result<Recorded> {
     let quantity = quantity.map_err(|[why, expected]| {
         let found = format!("{:?}, {why}", named.name);
         named.place.wrong(found, expected)
     });
-    Ok(named.recorded(word, quantity?, unit))
+    Ok(named.recorded(word, quantity?, kind))
 }
 
 pub(super) fn charge(named: &Named<'_>) -> Result<Recorded> {
@@ -180,7 +180,7 @@ pub(super) fn charge(named: &Named<'_>) -> Result<Recorded> {
         (false, true) => Ok(Quantity::of(What::MeanCharge(of.source))),
         (false, false) => Err(OF_ELEMENTS),
     };
-    known(named, "charge", quantity, (Charge::kind(), ("C", 1e-3)))
+    known(named, "charge", quantity, Charge::kind())
 }
 
 /// Current of a source: through a resistor, or that of the changing charge.
@@ -198,7 +198,7 @@ pub(super) fn current(named: &Named<'_>) -> Result<Recorded> {
         ]),
         (false, false) => Err(OF_ELEMENTS),
     };
-    known(named, "current", quantity, (Current::kind(), ("A", 1.0)))
+    known(named, "current", quantity, Current::kind())
 }
 
 /// Electrical power of the source of a muscle.
@@ -209,7 +209,7 @@ pub(super) fn power(named: &Named<'_>) -> Result<Recorded> {
         "which is no lumped muscle behind a resistor",
         "a lumped muscle with a \"resistance\" in its \"circuit\"",
     ]);
-    known(named, "power", quantity, (Power::kind(), ("W", 1.0)))
+    known(named, "power", quantity, Power::kind())
 }
 
 /// Voltage of electrodes that is not given.
@@ -220,5 +220,5 @@ pub(super) fn voltage(named: &Named<'_>) -> Result<Recorded> {
         "whose electrodes have the voltage that is given",
         "a source with a \"resistance\" in its \"circuit\"",
     ]);
-    known(named, "voltage", quantity, (Voltage::kind(), ("V", 1.0)))
+    known(named, "voltage", quantity, Voltage::kind())
 }
