@@ -18,7 +18,6 @@
 mod bindings;
 mod evaluation;
 mod ffi;
-mod iterate;
 mod ma57_adapter;
 mod options;
 mod session;
@@ -29,7 +28,7 @@ use std::ops::ControlFlow;
 
 use crate::nlp::Nlp;
 
-pub use iterate::{Before, Reached};
+pub use evaluation::{Before, Reached};
 #[doc(hidden)]
 pub use ma57_adapter::functions_of_ma57;
 pub use options::LinearSolver;

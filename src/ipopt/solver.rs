@@ -19,9 +19,8 @@
 //! whose positive root is the new distance. The parameter is the mean complementarity r (x − bound) of the point as it came, within
 //! a range.
 
-use crate::ipopt::evaluation::{Asked, Evaluator, Structures};
+use crate::ipopt::evaluation::{Asked, Evaluator, Reached, Record, Structures};
 use crate::ipopt::ffi::Problem;
-use crate::ipopt::iterate::{Reached, Record};
 use crate::ipopt::options;
 use crate::ipopt::options::{Options, Start};
 use crate::ipopt::session::Session;

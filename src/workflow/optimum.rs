@@ -1,12 +1,10 @@
 //! A control problem and the end of its solve, with the bounds and limits that it reaches.
 
 use crate::control::problem::{Control, Duration};
-use crate::control::{
-    BoundaryConditions, BoundedQuantity, Carried, Column, Row, Solution, Transcription,
-};
+use crate::control::{BoundaryConditions, Carried, Column, Row, Solution, Transcription};
 use crate::ipopt::SolverResult;
 use crate::math::significant;
-use crate::model::{JointReading, Model, Parameter, Role, Size, System, joint_unit};
+use crate::model::{JointReading, Model, Role, Size, joint_unit};
 use crate::nlp::{Nlp, Status};
 use crate::stop;
 use crate::workflow::hold_check::{Afterwards, Repeated, afterwards, repeated};
@@ -281,16 +279,28 @@ pub fn active(
                 let variable = column.of(&model.variables);
                 let source = variable.source.expect("an input of a source");
                 let unit = model.input_kind(source).unit();
-                seen.add_input(&variable.name, control.bounds(variable), unit, side);
+                let given = control.bounds(variable);
+                let listed = given.map(|bound| if bound == 0.0 { f64::INFINITY } else { bound });
+                seen.add(&variable.name, OF_INPUT, listed, side, |bound| {
+                    (bound, unit)
+                });
             }
             (Column::Instant { i, .. }, Role::Coordinate) => {
                 seen.add_coordinate(i, model, control, side);
             }
             (Column::Parameter { .. }, _) => {
                 let parameter = model.parameter(column.of(&model.variables));
-                seen.add_parameter(parameter, &model.system, side);
+                let unit = parameter.unit(&model.system);
+                let given = [parameter.lower, parameter.upper];
+                let plain = |bound: f64| (bound * unit.factor, unit.symbol);
+                seen.add(&parameter.name, ["bound", ""], given, side, plain);
             }
-            (Column::Horizon, _) => seen.add_duration(control.duration, side),
+            (Column::Horizon, _) => {
+                if let Duration::Free { min, max, .. } = control.duration {
+                    let plain = |bound: f64| (bound / 1e3, "s");
+                    seen.add("the duration", ["bound", ""], [min, max], side, plain);
+                }
+            }
             _ => {}
         }
     }
@@ -304,7 +314,12 @@ pub fn active(
         let bounded = program.limit(limit);
         if !bounded.when.is_single() {
             let side = reached(values[r], bounds.lower[r], bounds.upper[r]);
-            seen.add_limit(bounded, &model.system, side);
+            let kind = match bounded.quantity.is_of_intervals() {
+                true => ["limit", "interval"],
+                false => ["limit", "instant"],
+            };
+            let plain = |bound: f64| bounded.quantity.plain(bound, &model.system);
+            seen.add(&bounded.name, kind, bounded.bounds(), side, plain);
         }
     }
     seen.list()
@@ -327,14 +342,34 @@ fn reached(value: f64, low: f64, high: f64) -> [bool; 2] {
 #[derive(Debug, Default)]
 struct ActiveLimits(BTreeMap<String, Active>);
 
+/// Bounds of inputs, in words and by what they are counted.
+const OF_INPUT: [&str; 2] = ["bound", "interval"];
+
 impl ActiveLimits {
-    /// The bounds of a voltage or load in an interval.
-    fn add_input(&mut self, name: &str, bounds: [f64; 2], unit: &str, side: [bool; 2]) {
-        for (bound, is_reached) in bounds.into_iter().zip(side) {
-            if bound.is_finite() && bound != 0.0 {
-                let what = format!("{name} at its bound of {} {unit}", significant(bound, 4));
-                self.add(what, is_reached, "interval", unit == "V");
-            }
+    /// Counts a row of a quantity at those of its bounds that are finite, by words for these and for what is counted; `plain` gives a bound
+    /// in its unit.
+    fn add<'u>(
+        &mut self,
+        name: &str,
+        [word, noun]: [&'static str; 2],
+        bounds: [f64; 2],
+        side: [bool; 2],
+        plain: impl Fn(f64) -> (f64, &'u str),
+    ) {
+        let both = bounds.into_iter().zip(side);
+        for (bound, is_reached) in both.filter(|(bound, _)| bound.is_finite()) {
+            let (value, unit) = plain(bound);
+            let what = format!("{name} at its {word} of {} {unit}", significant(value, 4));
+            let what = what.trim_end().to_owned();
+            let entry = self.0.entry(what).or_insert_with_key(|what| Active {
+                what: what.clone(),
+                count: 0,
+                of: 0,
+                noun,
+                is_voltage: [word, noun] == OF_INPUT && unit == "V",
+            });
+            entry.of += 1;
+            entry.count += usize::from(is_reached);
         }
     }
 
@@ -344,74 +379,13 @@ impl ActiveLimits {
         let Some(joint) = model.joint_readings.iter().position(of) else {
             return;
         };
-        for limit in &control.limits {
-            if limit.joint() != Some(joint) || limit.part.is_some() {
-                continue;
-            }
-            let (name, unit) = (
-                &model.system.joints[joint].name,
-                joint_unit(&model.system, joint),
-            );
-            for (bound, is_reached) in limit.bounds().into_iter().zip(side) {
-                if bound.is_finite() {
-                    let value = significant(bound, 4);
-                    let what = format!("{name} at its limit of {value} {unit}");
-                    self.add(what, is_reached, "instant", false);
-                }
-            }
+        let name = &model.system.joints[joint].name;
+        let unit = joint_unit(&model.system, joint);
+        let limits = control.limits.iter();
+        for limit in limits.filter(|one| one.joint() == Some(joint) && one.part.is_none()) {
+            let kind = ["limit", "instant"];
+            self.add(name, kind, limit.bounds(), side, |bound| (bound, unit));
         }
-    }
-
-    /// The bounds of a free parameter.
-    fn add_parameter(&mut self, parameter: &Parameter, system: &System, side: [bool; 2]) {
-        let unit = parameter.unit(system);
-        let bounds = [parameter.lower, parameter.upper];
-        for (bound, is_reached) in bounds.into_iter().zip(side) {
-            let value = significant(bound * unit.factor, 4);
-            let what = format!("{} at its bound of {value} {}", parameter.name, unit.symbol);
-            self.add(what.trim_end().to_owned(), is_reached, "", false);
-        }
-    }
-
-    /// The bounds of a free duration.
-    fn add_duration(&mut self, duration: Duration, side: [bool; 2]) {
-        let Duration::Free { min, max, .. } = duration else {
-            return;
-        };
-        for (bound, is_reached) in [min, max].into_iter().zip(side) {
-            let seconds = significant(bound / 1e3, 4);
-            let what = format!("the duration at its bound of {seconds} s");
-            self.add(what, is_reached, "", false);
-        }
-    }
-
-    /// The limits of a quantity at an instant or in an interval.
-    fn add_limit(&mut self, bounded: &BoundedQuantity, system: &System, side: [bool; 2]) {
-        let noun = match bounded.quantity.is_of_intervals() {
-            true => "interval",
-            false => "instant",
-        };
-        for (bound, is_reached) in bounded.bounds().into_iter().zip(side) {
-            if bound.is_finite() {
-                let (value, unit) = bounded.quantity.plain(bound, system);
-                let space = if unit.is_empty() { "" } else { " " };
-                let value = significant(value, 4);
-                let what = format!("{} at its limit of {value}{space}{unit}", bounded.name);
-                self.add(what, is_reached, noun, false);
-            }
-        }
-    }
-
-    fn add(&mut self, what: String, is_reached: bool, noun: &'static str, is_voltage: bool) {
-        let entry = self.0.entry(what).or_insert_with_key(|what| Active {
-            what: what.clone(),
-            count: 0,
-            of: 0,
-            noun,
-            is_voltage,
-        });
-        entry.of += 1;
-        entry.count += usize::from(is_reached);
     }
 
     fn list(self) -> Vec<Active> {

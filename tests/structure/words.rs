@@ -117,7 +117,7 @@ const PATHS: [(&str, &str); 52] = [
     ("dynamics/galerkin/places", "dynamics/galerkin/state"),
     ("ipopt/centre", "ipopt/solver"),
     ("ipopt/hook", "ipopt/ma57_adapter"),
-    ("ipopt/reached", "ipopt/iterate"),
+    ("ipopt/reached", "ipopt/evaluation"),
     ("kkt/arrange", "kkt/bandwidth_order"),
     ("kkt/care", "kkt/solver"),
     ("kkt/groups", "kkt/eliminable_groups"),

@@ -342,6 +342,18 @@ impl Program<'_> {
         at(k + 1) - at(k)
     }
 
+    /// Hands over column, reading, deviation and weight of each input.
+    fn each_input(&self, x: &[f64], mut to: impl FnMut(usize, [f64; 3], f64, f64)) {
+        for (k, inputs) in self.layout.driven.iter().enumerate() {
+            let given = &self.reference.at(self.begin + k).inputs;
+            for (i, (input, given)) in inputs.iter().zip(given).enumerate() {
+                let reading = input.reading(x[input.column]);
+                let off = reading[0] - given - self.lasting.inputs[i];
+                to(input.column, reading, off, self.reference.inputs[i]);
+            }
+        }
+    }
+
     /// Columns of the values of the state at the end with their scales.
     fn end_column(&self, c: usize) -> (usize, f64) {
         let n = self.layout.width();
@@ -367,14 +379,7 @@ impl Program<'_> {
         sum += square(&self.deviation, &self.reference.at(self.begin + last).end);
         let slope = self.deviation.iter().zip(&self.lasting.slope);
         sum += 2.0 * slope.map(|(d, slope)| d * slope).sum::<f64>();
-        for (k, inputs) in self.layout.driven.iter().enumerate() {
-            let given = &self.reference.at(self.begin + k).inputs;
-            for (i, (input, given)) in inputs.iter().zip(given).enumerate() {
-                let [value, ..] = input.reading(x[input.column]);
-                let off = value - given - self.lasting.inputs[i];
-                sum += self.reference.inputs[i] * off.powi(2);
-            }
-        }
+        self.each_input(x, |_, _, off, weight| sum += weight * off.powi(2));
         0.5 * sum
     }
 
@@ -401,14 +406,9 @@ impl Program<'_> {
             let slope = product(end, a, &self.deviation);
             grad[column] += scale * (slope + self.lasting.slope[a]);
         }
-        for (k, inputs) in self.layout.driven.iter().enumerate() {
-            let given = &self.reference.at(self.begin + k).inputs;
-            for (i, (input, given)) in inputs.iter().zip(given).enumerate() {
-                let [value, slope, _] = input.reading(x[input.column]);
-                let off = value - given - self.lasting.inputs[i];
-                grad[input.column] += self.reference.inputs[i] * off * slope;
-            }
-        }
+        self.each_input(x, |column, [_, slope, _], off, weight| {
+            grad[column] += weight * off * slope;
+        });
     }
 
     /// Its second derivatives times a factor, in the order of the entries.
@@ -440,14 +440,9 @@ impl Program<'_> {
                 put(scales * (end[(a, b)] + of_rates));
             }
         }
-        for (k, inputs) in self.layout.driven.iter().enumerate() {
-            let given = &self.reference.at(self.begin + k).inputs;
-            for (i, (input, given)) in inputs.iter().zip(given).enumerate() {
-                let [value, slope, curvature] = input.reading(x[input.column]);
-                let off = value - given - self.lasting.inputs[i];
-                put(self.reference.inputs[i] * (slope * slope + off * curvature));
-            }
-        }
+        self.each_input(x, |_, [_, slope, curvature], off, weight| {
+            put(weight * (slope * slope + off * curvature));
+        });
     }
 }
 
