@@ -446,11 +446,8 @@ fn columns(model: &Model, parts: &PartColumns) -> Vec<Column> {
     for muscle in &system.muscles {
         add(format!("{}_stretch", muscle.name), "");
     }
-    let electrodes = model
-        .solids
-        .iter()
-        .flat_map(SolidBlock::immobile_electrodes);
-    for (block, electrode) in electrodes {
+    let blocks = model.solids.iter();
+    for (block, electrode) in blocks.flat_map(SolidBlock::immobile_electrodes) {
         add(format!("{block}_{electrode}_charge"), "mC");
     }
     for voltage in model.variables.with(Role::Voltage) {

@@ -1,7 +1,7 @@
 //! Free parameters as components read them.
 
 use crate::energy::Coefficient;
-use crate::functional::{LawElement, Move, VectorArg};
+use crate::functional::{FreeConstant, LawElement, Move, VectorArg};
 use crate::kinematics::MaterialVector;
 use crate::math::Vector;
 use crate::model::constants::constant::{Constant, Drifts, Follower, Parameter, pruned};
@@ -77,6 +77,12 @@ impl Read {
     /// The parameters that were read, scalars of the interval.
     pub fn scalars(self) -> Vec<usize> {
         self.scalars
+    }
+
+    /// A constant that follows the parameters that were read.
+    pub(crate) fn into_constant(self, of: Coefficient) -> FreeConstant {
+        let parameters = self.scalars;
+        FreeConstant { of, parameters }
     }
 
     /// The same, and the moves of what an element reads.

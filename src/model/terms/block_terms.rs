@@ -278,6 +278,7 @@ fn add_branch(
     let mut read = terms.sought().read();
     let modulus = read.constant(of_modulus, shear_modulus);
     let both = &modulus * &read.constant(of_time, relaxation_time);
+    let both = read.into_constant(both);
     let strains = strains.map(|parts| parts.map(|part| terms.new_vector(part)));
     let shape = c.shapes[e].clone();
     for ([stretches, shears], volume) in strains.into_iter().zip(shape.weights()) {
@@ -289,8 +290,7 @@ fn add_branch(
             scalars: [],
         };
         let given = element(relaxation_time * shear_modulus * volume);
-        let (unit, read) = (element(*volume), read.clone());
-        viscosity.add_times(given, unit, both.clone(), read, terms);
+        viscosity.add_times(given, element(*volume), both.clone(), terms);
     }
     let element = |shear_modulus| MaxwellElement {
         shape: shape.clone(),

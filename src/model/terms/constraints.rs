@@ -32,17 +32,17 @@ pub(crate) struct Constraints {
 
 impl Constraints {
     /// Adds a term of elements for the parts of the scene that are named, if there are any.
-    fn add<K: Kernel>(
+    fn add<'n, K: Kernel>(
         &mut self,
         term: &'static str,
         scale: f64,
         elements: Vec<K>,
-        reason: (&'static str, &[&str]),
+        why: &'static str,
+        names: impl Iterator<Item = &'n str>,
     ) {
         if elements.is_empty() {
             return;
         }
-        let (why, names) = reason;
         for name in names {
             note(&mut self.present, term, why, name);
         }
@@ -82,26 +82,20 @@ impl Construction<'_> {
         }
         self.joint_coordinates(vectors, &mut all);
         let bodies = system.bodies.iter().map(|body| body.name.as_str());
-        let bodies: Vec<&str> = bodies.collect();
-        let named = system.joints.iter().map(|joint| joint.name.as_str());
-        let named: Vec<&str> = named.collect();
+        let joints = || system.joints.iter().map(|joint| joint.name.as_str());
         let is_glued = |glue: &Glue| glue.body.is_some();
         let glued = self.blocks.list.iter().filter(|c| !c.is_immobile);
         let glued = glued.filter(|c| c.solid.glued.iter().any(is_glued));
-        let glued: Vec<&str> = glued.map(|c| c.solid.name.as_str()).collect();
-        let (directors, ends) = (
-            ("directors of", &bodies[..]),
-            ("redundant coordinates at the ends of", &named[..]),
-        );
+        let glued = glued.map(|c| c.solid.name.as_str());
         made.multipliers = all.names;
-        made.add(RIGID, -h0, rigid, directors);
-        made.add(DIRECTIONS, -h0, all.dots, ends);
-        made.add(POINTS, -h0, points, ends);
-        let of: Vec<&str> = all.of.iter().map(String::as_str).collect();
-        let of = ("stiffness of", &of[..]);
-        made.add(COORDINATES, -h0, all.angles, of);
-        made.add(COORDINATES, -h0, all.displacements, of);
-        made.add(GLUE, -h0, all.points, ("glued nodes of", &glued));
+        made.add(RIGID, -h0, rigid, "directors of", bodies);
+        let why = "redundant coordinates at the ends of";
+        made.add(DIRECTIONS, -h0, all.dots, why, joints());
+        made.add(POINTS, -h0, points, why, joints());
+        let (why, of) = ("stiffness of", || all.of.iter().map(String::as_str));
+        made.add(COORDINATES, -h0, all.angles, why, of());
+        made.add(COORDINATES, -h0, all.displacements, why, of());
+        made.add(GLUE, -h0, all.points, "glued nodes of", glued);
     }
 
     /// Constraints of the joints, those that close loops without what is left out.

@@ -81,17 +81,7 @@ impl Call<'_> {
     }
 
     /// Adds an element, of those that are no formulas of constants, times a constant that follows parameters.
-    pub(super) fn add_scaled<K: Kernel>(
-        self,
-        of: K,
-        factor: Coefficient,
-        read: Read,
-        terms: &mut Terms<'_>,
-    ) {
-        let factor = FreeConstant {
-            of: factor,
-            parameters: read.scalars(),
-        };
+    pub(super) fn add_scaled<K: Kernel>(self, of: K, factor: FreeConstant, terms: &mut Terms<'_>) {
         self.add(ScaledElement { of, factor }, terms);
     }
 
@@ -100,13 +90,12 @@ impl Call<'_> {
         self,
         given: K,
         unit: K,
-        factor: Coefficient,
-        read: Read,
+        factor: FreeConstant,
         terms: &mut Terms<'_>,
     ) {
-        match read.is_empty() {
+        match factor.parameters.is_empty() {
             true => self.add(given, terms),
-            false => self.add_scaled(unit, factor, read, terms),
+            false => self.add_scaled(unit, factor, terms),
         }
     }
 
@@ -120,7 +109,12 @@ impl Call<'_> {
     ) {
         let mut read = terms.sought().read();
         let factor = read.constant(constant, value);
-        self.add_times(element(value), element(1.0), factor, read, terms);
+        self.add_times(
+            element(value),
+            element(1.0),
+            read.into_constant(factor),
+            terms,
+        );
     }
 }
 

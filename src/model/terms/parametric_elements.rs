@@ -2,10 +2,9 @@
 //! that read none of them.
 
 use crate::element::{ElementLaw, IsochoricLaw};
-use crate::energy::{Coefficient, NeoHooke};
+use crate::energy::NeoHooke;
 use crate::functional::{FiniteElement, FreeConstant, Kernel, VariedElement};
 use crate::model::constants::constant::MaterialConstant;
-use crate::model::constants::free_parameters::Read;
 use crate::model::layout::solid_block::SolidBlock;
 use crate::model::terms::{Call, Terms};
 
@@ -37,9 +36,6 @@ pub(crate) struct ElementOf<'a> {
     pub(crate) names: [&'static str; 2],
 }
 
-/// A constant that is free, and what is read of it.
-type Factor = (Coefficient, Read);
-
 impl ElementOf<'_> {
     fn is_charged(self) -> bool {
         self.block.is_dielectric[self.number]
@@ -54,15 +50,12 @@ impl ElementOf<'_> {
         [law.shear_modulus, law.lame_lambda, 0.0, 0.0, 0.0]
     }
 
-    /// The product of constants of its material that have these values.
-    fn product(self, of: &[(MaterialConstant, f64)], terms: &Terms<'_>) -> Factor {
+    /// A constant of its material that has a value.
+    fn factor(self, constant: MaterialConstant, value: f64, terms: &Terms<'_>) -> FreeConstant {
         let mut read = terms.sought().read();
-        let mut factor = Coefficient::from(1.0);
-        for &(constant, value) in of {
-            let constant = self.block.constant(self.number, constant);
-            factor = &factor * &read.constant(constant, value);
-        }
-        (factor, read)
+        let constant = self.block.constant(self.number, constant);
+        let of = read.constant(constant, value);
+        read.into_constant(of)
     }
 
     /// Reason for the terms of its elasticity without a field.
@@ -83,7 +76,7 @@ impl ElementOf<'_> {
         for i in (1..last).filter(|&i| linear[i]) {
             let mut unit = [0.0; 5];
             unit[i] = 1.0;
-            let factor = self.product(&[(LINEAR[i], rest[i])], terms);
+            let factor = self.factor(LINEAR[i], rest[i], terms);
             rest[i] = 0.0;
             self.add(NeoHooke, unit, Some(factor), terms);
         }
@@ -100,42 +93,40 @@ impl ElementOf<'_> {
 
     /// Adds the energy of a law of elasticity without λ, of which constants are free.
     fn add_law<L: ElementLaw>(self, law: L, shear_modulus: f64, terms: &mut Terms<'_>) {
-        let modulus = (LINEAR[0], shear_modulus);
         let unit = [1.0, 0.0, 0.0, 0.0, 0.0];
         match law.isochoric() {
             None => {
-                let factor = self.product(&[modulus], terms);
+                let factor = self.factor(LINEAR[0], shear_modulus, terms);
                 self.add(law, unit, Some(factor), terms);
             }
             Some(IsochoricLaw::MooneyRivlin { share }) => {
                 for (part, slope) in [(0.0, -1.0), (1.0, 1.0)] {
-                    let (modulus, mut read) = self.product(&[modulus], terms);
-                    let constant = self.block.constant(self.number, OF_LAWS[1]);
-                    let share = read.constant(constant, share).scaled(slope);
-                    let factor = &modulus * &(&share + &(1.0 - part).into());
+                    let mut read = terms.sought().read();
+                    let values = [(LINEAR[0], shear_modulus), (OF_LAWS[1], share)];
+                    let [modulus, share] = values.map(|(constant, value)| {
+                        read.constant(self.block.constant(self.number, constant), value)
+                    });
+                    let share = &share.scaled(slope) + &(1.0 - part).into();
+                    let factor = read.into_constant(&modulus * &share);
                     let law = IsochoricLaw::MooneyRivlin { share: part };
-                    self.add(law, unit, Some((factor, read)), terms);
+                    self.add(law, unit, Some(factor), terms);
                 }
             }
             Some(IsochoricLaw::Yeoh { c2, c3 }) => {
                 let parts = [
-                    (modulus, [1.0, 0.0, 0.0]),
-                    ((OF_LAWS[2], c2), [0.0, 1.0, 0.0]),
-                    ((OF_LAWS[3], c3), [0.0, 0.0, 1.0]),
+                    (LINEAR[0], shear_modulus, [1.0, 0.0, 0.0]),
+                    (OF_LAWS[2], c2, [0.0, 1.0, 0.0]),
+                    (OF_LAWS[3], c3, [0.0, 0.0, 1.0]),
                 ];
-                for (constant, [mu, c2, c3]) in parts {
-                    let factor = self.product(&[constant], terms);
+                for (constant, value, [mu, c2, c3]) in parts {
+                    let factor = self.factor(constant, value, terms);
                     let unit = [mu, 0.0, 0.0, 0.0, 0.0];
                     self.add(IsochoricLaw::Yeoh { c2, c3 }, unit, Some(factor), terms);
                 }
             }
             Some(law @ IsochoricLaw::Gent { limit }) => {
-                let factor = self.product(&[modulus], terms);
-                let (limit, read) = self.product(&[(OF_LAWS[0], limit)], terms);
-                let limit = FreeConstant {
-                    of: limit,
-                    parameters: read.scalars(),
-                };
+                let factor = self.factor(LINEAR[0], shear_modulus, terms);
+                let limit = self.factor(OF_LAWS[0], limit, terms);
                 match limit.parameters.is_empty() {
                     true => self.add(law, unit, Some(factor), terms),
                     false => self.add_varied(law, limit, factor, terms),
@@ -152,7 +143,7 @@ impl ElementOf<'_> {
         self,
         law: IsochoricLaw,
         limit: FreeConstant,
-        factor: Factor,
+        factor: FreeConstant,
         terms: &mut Terms<'_>,
     ) {
         let Self { block, number, .. } = self;
@@ -164,8 +155,7 @@ impl ElementOf<'_> {
             nodes: block.nodes(number),
             limit,
         };
-        let (factor, read) = factor;
-        self.call().add_scaled(element, factor, read, terms);
+        self.call().add_scaled(element, factor, terms);
     }
 
     /// Adds an element of these constants, times factors, if there are any.
@@ -173,7 +163,7 @@ impl ElementOf<'_> {
         self,
         law: L,
         constants: [f64; 5],
-        factor: Option<Factor>,
+        factor: Option<FreeConstant>,
         terms: &mut Terms<'_>,
     ) {
         let Self {
@@ -207,9 +197,14 @@ impl ElementOf<'_> {
 }
 
 /// Adds an element, or the product of it with a factor.
-fn collect<K: Kernel>(call: Call<'_>, element: K, factor: Option<Factor>, terms: &mut Terms<'_>) {
+fn collect<K: Kernel>(
+    call: Call<'_>,
+    element: K,
+    factor: Option<FreeConstant>,
+    terms: &mut Terms<'_>,
+) {
     match factor {
         None => call.add(element, terms),
-        Some((factor, read)) => call.add_scaled(element, factor, read, terms),
+        Some(factor) => call.add_scaled(element, factor, terms),
     }
 }
