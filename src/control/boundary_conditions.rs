@@ -13,9 +13,7 @@ use crate::control::prescribed::{self, at_rest};
 use crate::control::problem::{
     BoundaryState, Control, Duration, Guess, Hold, Objective, Solver, SoughtHold,
 };
-use crate::dynamics::{
-    Equilibrium, Start, muscle_without_length, part_beyond_law, stable_equilibrium,
-};
+use crate::dynamics::{Equilibrium, Start, part_without_energy, stable_equilibrium};
 use crate::functional::{Order, TermKind};
 use crate::model::{
     Analysis, Model, ModelError, Parameter, Prescribed, Presolved, Role, with_parameters,
@@ -225,14 +223,7 @@ pub(super) fn check_muscles(
     z: &[f64],
     place: &'static str,
 ) -> Result<(), BoundaryError> {
-    let beyond = part_beyond_law(model, z).map(|part| part.to_string());
-    let without_length = || {
-        let name = &model.system.muscles[muscle_without_length(model, z)?].name;
-        Some(format!(
-            "the ends of muscle \"{name}\" meet there, where it has no energy"
-        ))
-    };
-    match beyond.or_else(without_length) {
+    match part_without_energy(model, z) {
         None => Ok(()),
         Some(reason) => Err(BoundaryError::refused(place, reason)),
     }

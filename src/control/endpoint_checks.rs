@@ -7,7 +7,7 @@ use crate::control::limits::{BoundedQuantity, When};
 use crate::control::problem::{BoundaryState, Control, Limit};
 use crate::control::transcription::Site;
 use crate::coordinates::Configuration;
-use crate::dynamics::BeyondLaw;
+use crate::dynamics::muscle_beyond_law;
 use crate::energy::{Energy, OutsideBox, SquaredDistance};
 use crate::functional::Sample;
 use crate::math::{Local, significant};
@@ -243,7 +243,7 @@ fn beyond_law(model: &Model, limit: &Limit) -> Option<String> {
     let muscle = &model.system.muscles[muscle];
     let mut bounds = limit.bounds().into_iter();
     let beyond = bounds.find_map(|bound| match bound > 0.0 && bound.is_finite() {
-        true => BeyondLaw::at(muscle, bound),
+        true => muscle_beyond_law(muscle, bound),
         false => None,
     });
     beyond.map(|beyond| format!("at a bound {beyond}"))

@@ -10,7 +10,7 @@ use crate::control::problem::{
 };
 use crate::feedback::Law;
 use crate::model::system::{Attachment, Muscle, System};
-use crate::model::{Analysis, InitiallyMoving, PartKind, What};
+use crate::model::{Analysis, Component, InitiallyMoving, PartKind, What};
 
 impl Simulation {
     /// The analysis of a motion in steps of `step` ms.
@@ -188,20 +188,10 @@ impl<'a> Named<'a> {
                 PartKind::Body => self.initially_moving.bodies.extend([part]),
                 PartKind::Muscle => {
                     let muscle = &self.system.muscles[part];
-                    [muscle.from, muscle.to]
-                        .iter()
-                        .for_each(|end| self.of_point(end));
+                    self.of_points(&[muscle.from, muscle.to]);
                 }
-                PartKind::Spring => {
-                    let spring = &components.springs[part];
-                    [spring.from, spring.to]
-                        .iter()
-                        .for_each(|end| self.of_point(end));
-                }
-                PartKind::Tendon => {
-                    let through = components.tendons[part].through.iter();
-                    through.for_each(|point| self.of_point(point));
-                }
+                PartKind::Spring => self.of_points(&components.springs[part].points()),
+                PartKind::Tendon => self.of_points(&components.tendons[part].through),
                 PartKind::Source | PartKind::Block => {}
             }
         }
@@ -216,10 +206,11 @@ impl<'a> Named<'a> {
     fn of_marker(&mut self, marker: usize) {
         let marker = &self.system.markers[marker];
         self.initially_moving.solids.extend(marker.solid);
-        self.of_point(&marker.point);
+        self.of_points(&[marker.point]);
     }
 
-    fn of_point(&mut self, point: &Attachment) {
-        self.initially_moving.bodies.extend(point.body);
+    fn of_points(&mut self, points: &[Attachment]) {
+        let bodies = points.iter().filter_map(|point| point.body);
+        self.initially_moving.bodies.extend(bodies);
     }
 }

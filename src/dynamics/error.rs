@@ -1,7 +1,7 @@
 //! Errors of steps and of equilibria.
 
 use crate::dynamics::equilibrium::{Equilibrium, Instability, Load, StabilityLoss};
-use crate::dynamics::singular_configurations::{BeyondLaw, NOTHING};
+use crate::dynamics::singular_configurations::NOTHING;
 use crate::nlp::Status;
 use crate::stop::Stopped;
 use thiserror::Error;
@@ -23,8 +23,8 @@ pub enum StepError {
         residuals: Vec<f64>,
         /// Shortest lumped muscle at the start of the step and its stretch, if it is rather short.
         muscle: Option<(String, f64)>,
-        /// Lumped muscle or block near the limit of its law at the start of the step, or beyond it at the end that was tried.
-        limit: Option<Box<BeyondLaw>>,
+        /// Words on a lumped muscle or block near the limit of its law at the start of the step, or beyond it at the end that was tried.
+        limit: Option<String>,
         /// Forces beyond the range of numbers, and the greatest voltage, where an inverted element is not what they are laid to.
         overflow: Option<f64>,
     },
@@ -47,8 +47,8 @@ pub enum StepError {
         time: f64,
         /// Smallest step that was tried in ms.
         step: f64,
-        /// The muscle or block.
-        part: BeyondLaw,
+        /// Words on the muscle or block.
+        part: String,
     },
     /// An element of a block is inverted at the end of the step, although it was halved.
     #[error(
@@ -234,7 +234,7 @@ fn short(residuals: &[f64]) -> String {
 /// Explains a muscle near a limit, a short one, or residuals that are not finite.
 fn hint(
     residuals: &[f64],
-    limit: Option<&BeyondLaw>,
+    limit: Option<&str>,
     muscle: Option<&(String, f64)>,
     overflow: Option<&f64>,
 ) -> String {

@@ -48,10 +48,10 @@ pub use midpoint::{Midpoint, Stepper};
 pub use momenta::{Start, last_momentum, rates_of_momentum};
 pub use observe::{observations, observed};
 pub use resolution::{Balance, LocalError, distance_between, local_error};
-pub use simulate::{Lengths, StepControl, TimeGrid, go_on, simulate, simulate_by};
+pub use simulate::{Lengths, StepControl, go_on, simulate, simulate_by};
 pub use singular_configurations::{
-    BeyondLaw, OutOfDomain, OutOfRange, largest_stretch, muscle_without_length, out_of_domain,
-    out_of_range, part_beyond_law, reversed_muscle,
+    OutOfDomain, OutOfRange, largest_stretch, muscle_beyond_law, out_of_domain, out_of_range,
+    part_without_energy, reversed_muscle,
 };
 pub use solving::{Drive, Inputs, Integrator, MultigridUse, Newton, Solving};
 pub use state_space::{

@@ -40,7 +40,7 @@ pub fn simulate_by(
     drive: impl Drive,
     observer: impl FnMut(&DiscreteTrajectory) -> ControlFlow<()>,
 ) -> (DiscreteTrajectory, Option<StepError>) {
-    let lengths = Lengths::Equal(TimeGrid { h, steps });
+    let lengths = Lengths::Equal { h, steps };
     let begun = DiscreteTrajectory::at(start);
     go_on(solving, model, begun, lengths, &drive, observer)
 }
@@ -49,7 +49,12 @@ pub fn simulate_by(
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lengths<'a> {
     /// Equal ones.
-    Equal(TimeGrid),
+    Equal {
+        /// Length in ms.
+        h: f64,
+        /// Number of steps.
+        steps: usize,
+    },
     /// Steps between times in ms that grow from zero.
     Between(&'a [f64]),
     /// By their local error.
@@ -159,15 +164,6 @@ impl DiscreteTrajectory {
     }
 }
 
-/// A number of steps of h ms.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct TimeGrid {
-    /// Length in ms.
-    pub h: f64,
-    /// Number of steps.
-    pub steps: usize,
-}
-
 impl Lengths<'_> {
     /// Length in ms of the first step, where it is given.
     fn first(self) -> Option<f64> {
@@ -177,9 +173,7 @@ impl Lengths<'_> {
     /// Both times and the length in ms of a step that is given.
     fn step(self, k: usize) -> Option<[f64; 3]> {
         match self {
-            Self::Equal(TimeGrid { h, steps }) => {
-                (k < steps).then(|| [k as f64 * h, (k + 1) as f64 * h, h])
-            }
+            Self::Equal { h, steps } => (k < steps).then(|| [k as f64 * h, (k + 1) as f64 * h, h]),
             Self::Between(times) => {
                 let (from, to) = (*times.get(k)?, *times.get(k + 1)?);
                 Some([from, to, to - from])

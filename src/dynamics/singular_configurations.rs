@@ -22,7 +22,6 @@ use crate::math::{Matrix, Vector, largest_eigenvalue_bound};
 use crate::model::system::{ElasticLaw, ElectricConstants, Fidelity, Material, Muscle};
 use crate::model::{Model, SolidBlock};
 use nalgebra::SymmetricEigen;
-use std::fmt;
 
 /// Below this stretch a muscle is named where a step fails; pull-in of an ideal dielectric is at 0.63.
 const SHORT: f64 = 0.5;
@@ -53,138 +52,87 @@ pub(super) fn reversed(
         .map(|(muscle, _)| muscle)
 }
 
-/// The shortest lumped muscle of a placed instant, if it is rather short: its index and its stretch.
-pub(super) fn shortest(model: &Model, at: &Configuration) -> Option<(usize, f64)> {
+/// The shortest lumped muscle of a placed instant, if it is rather short: its name and its stretch.
+pub(super) fn shortest<'m>(model: &'m Model, at: &Configuration) -> Option<(&'m str, f64)> {
     let all = lumped(model).map(|(m, span)| {
-        let length = model.system.muscles[m].length();
-        (m, at.x[span].norm() / length)
+        let muscle = &model.system.muscles[m];
+        (muscle.name.as_str(), at.x[span].norm() / muscle.length())
     });
     let short = all.filter(|(_, s)| *s < SHORT);
     short.min_by(|a, b| a.1.total_cmp(&b.1))
 }
 
-/// The first lumped muscle whose ends meet at coordinates.
-pub fn muscle_without_length(model: &Model, coordinates: &[f64]) -> Option<usize> {
+/// A lumped muscle or block that has no energy by its law at coordinates, or a muscle whose ends meet there, in words.
+pub fn part_without_energy(model: &Model, coordinates: &[f64]) -> Option<String> {
     let instant = model.action.map.placed(coordinates);
-    let (muscle, stretch) = shortest(model, &instant)?;
-    (stretch < NOTHING).then_some(muscle)
+    let without_length = || {
+        let (name, stretch) = shortest(model, &instant)?;
+        (stretch < NOTHING)
+            .then(|| format!("the ends of muscle \"{name}\" meet there, where it has no energy"))
+    };
+    beyond_law(model, &instant).or_else(without_length)
 }
 
-/// A lumped muscle or a block that Gent's law leaves no energy.
-#[derive(Clone, Debug, PartialEq)]
-pub enum BeyondLaw {
-    /// A lumped muscle.
-    Muscle {
-        /// Its name.
-        name: String,
-        /// Its stretch.
-        stretch: f64,
-        /// Stretches between which there is an energy.
-        range: [f64; 2],
-    },
-    /// A block of finite elements.
-    Block {
-        /// Its name.
-        name: String,
-        /// Greatest Ī₁ − 3 at its Gauss points.
-        strain: f64,
-        /// Jₘ, below which there is an energy.
-        limit: f64,
-    },
+/// Words on a lumped muscle at a stretch within a part of the range of its law, from 0 at its ends to 1 at rest, or beyond; `None` elsewhere.
+fn muscle_at_limit(muscle: &Muscle, stretch: f64, part: f64) -> Option<String> {
+    let [low, high] = muscle.material.law?.stretches()?;
+    let is_inside = low + part * (1.0 - low) < stretch && stretch < high - part * (high - 1.0);
+    let name = &muscle.name;
+    (!is_inside).then(|| format!(
+        "muscle \"{name}\" has the stretch {stretch:.4}; Gent's limit leaves its law an energy between {low:.4} and {high:.4} only"
+    ))
 }
 
-impl BeyondLaw {
-    /// Of a muscle at a stretch within a part of the range of its law, from 0 at its ends to 1 at rest, or beyond; `None` elsewhere.
-    fn within(muscle: &Muscle, stretch: f64, part: f64) -> Option<Self> {
-        let [low, high] = muscle.material.law?.stretches()?;
-        let is_inside = low + part * (1.0 - low) < stretch && stretch < high - part * (high - 1.0);
-        (!is_inside).then(|| Self::Muscle {
-            name: muscle.name.clone(),
-            stretch,
-            range: [low, high],
-        })
-    }
+/// Words on a muscle that has no energy at a stretch.
+pub fn muscle_beyond_law(muscle: &Muscle, stretch: f64) -> Option<String> {
+    muscle_at_limit(muscle, stretch, 0.0)
+}
 
-    /// Of a muscle that has no energy at a stretch.
-    pub fn at(muscle: &Muscle, stretch: f64) -> Option<Self> {
-        Self::within(muscle, stretch, 0.0)
+/// Words on a block with its nodes at `x` within the same part of Jₘ, or beyond.
+fn block_at_limit(block: &SolidBlock, x: &[Vector], part: f64) -> Option<String> {
+    let has_limit = |material: &Material| matches!(material.law, Some(ElasticLaw::Gent { .. }));
+    if !block.solid.materials.iter().any(has_limit) {
+        return None;
     }
-
-    /// Of a block with its nodes at `x` within the same part of Jₘ, or beyond.
-    fn of_block(block: &SolidBlock, x: &[Vector], part: f64) -> Option<Self> {
-        let has_limit = |material: &Material| matches!(material.law, Some(ElasticLaw::Gent { .. }));
-        if !block.solid.materials.iter().any(has_limit) {
-            return None;
-        }
-        let strain = |element: usize, limit: f64| {
-            let nodes = block.nodes(element).map(|v| x[v]);
-            let shape = &block.shapes[element];
-            let points = (0..shape.weights().len()).map(|g| {
-                let gradient = shape.gradient_of(&nodes, g);
-                gradient.norm_squared() * gradient.determinant().powf(-2.0 / 3.0) - 3.0
-            });
-            (points.fold(f64::NEG_INFINITY, f64::max), limit)
-        };
-        let elements = (0..block.shapes.len()).filter_map(|e| match block.material(e).law? {
-            ElasticLaw::Gent { limit } => Some(strain(e, limit)),
-            _ => None,
+    let strain = |element: usize, limit: f64| {
+        let nodes = block.nodes(element).map(|v| x[v]);
+        let shape = &block.shapes[element];
+        let points = (0..shape.weights().len()).map(|g| {
+            let gradient = shape.gradient_of(&nodes, g);
+            gradient.norm_squared() * gradient.determinant().powf(-2.0 / 3.0) - 3.0
         });
-        let (strain, limit) = elements.max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
-        (strain >= (1.0 - part) * limit).then(|| Self::Block {
-            name: block.solid.name.clone(),
-            strain,
-            limit,
-        })
-    }
+        (points.fold(f64::NEG_INFINITY, f64::max), limit)
+    };
+    let elements = (0..block.shapes.len()).filter_map(|e| match block.material(e).law? {
+        ElasticLaw::Gent { limit } => Some(strain(e, limit)),
+        _ => None,
+    });
+    let (strain, limit) = elements.max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
+    let name = &block.solid.name;
+    (strain >= (1.0 - part) * limit).then(|| format!(
+        "block \"{name}\" has I1 - 3 = {strain:.4} at a Gauss point; Gent's limit leaves its law an energy below {limit} only"
+    ))
 }
 
-impl fmt::Display for BeyondLaw {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Muscle {
-                name,
-                stretch,
-                range: [low, high],
-            } => write!(
-                f,
-                "muscle \"{name}\" has the stretch {stretch:.4}; Gent's limit leaves its law an energy between {low:.4} and {high:.4} only"
-            ),
-            Self::Block {
-                name,
-                strain,
-                limit,
-            } => write!(
-                f,
-                "block \"{name}\" has I1 - 3 = {strain:.4} at a Gauss point; Gent's limit leaves its law an energy below {limit} only"
-            ),
-        }
-    }
-}
-
-/// The first lumped muscle or block of a placed instant that is within a part of the range of its law, from 0 at its ends to 1 at rest, or
+/// Words on the first lumped muscle or block of a placed instant that is within a part of the range of its law, from 0 at its ends to 1 at rest, or
 /// beyond.
-fn at_limit(model: &Model, at: &Configuration, part: f64) -> Option<BeyondLaw> {
+fn at_limit(model: &Model, at: &Configuration, part: f64) -> Option<String> {
     let muscle = lumped(model).find_map(|(m, span)| {
         let muscle = &model.system.muscles[m];
-        BeyondLaw::within(muscle, at.x[span].norm() / muscle.length(), part)
+        muscle_at_limit(muscle, at.x[span].norm() / muscle.length(), part)
     });
     let mut blocks = model.solids.iter();
-    muscle.or_else(|| blocks.find_map(|block| BeyondLaw::of_block(block, &at.x, part)))
+    muscle.or_else(|| blocks.find_map(|block| block_at_limit(block, &at.x, part)))
 }
 
-/// The first lumped muscle or block of a placed instant that has no energy by its law.
-pub(super) fn beyond_law(model: &Model, at: &Configuration) -> Option<BeyondLaw> {
+/// Words on the first lumped muscle or block of a placed instant that has no energy by its law.
+pub(super) fn beyond_law(model: &Model, at: &Configuration) -> Option<String> {
     at_limit(model, at, 0.0)
 }
 
-/// The first lumped muscle or block of a placed instant to which a step that fails there is laid, as the limit of its law is near.
-pub(super) fn near_limit(model: &Model, at: &Configuration) -> Option<BeyondLaw> {
+/// Words on the first lumped muscle or block of a placed instant to which a step that fails there is laid, as the limit of its law is near.
+pub(super) fn near_limit(model: &Model, at: &Configuration) -> Option<String> {
     at_limit(model, at, NEAR)
-}
-
-/// The first lumped muscle or block that has no energy by its law at coordinates.
-pub fn part_beyond_law(model: &Model, coordinates: &[f64]) -> Option<BeyondLaw> {
-    beyond_law(model, &model.action.map.placed(coordinates))
 }
 
 /// Returns true if an elastic block has no energy at a placed instant: an element is inverted.

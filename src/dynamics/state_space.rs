@@ -15,24 +15,17 @@ use crate::functional::Order;
 use crate::math::Vector;
 use crate::model::{Coordinates, Model, Role};
 use nalgebra::{DMatrix, DVector};
-use std::fmt;
+use thiserror::Error;
 
 /// Reason why a model has no state of this kind.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 pub enum NoState {
     /// Its coordinates are redundant.
+    #[error("the coordinates are redundant, as of closed loops")]
     Redundant,
     /// Some of its coordinates are turns relative to a rotation that changes.
+    #[error("a spherical joint or a free body turns in all directions")]
     Charts,
-}
-
-impl fmt::Display for NoState {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Redundant => "the coordinates are redundant, as of closed loops",
-            Self::Charts => "a spherical joint or a free body turns in all directions",
-        })
-    }
 }
 
 /// An input by which a step is differentiated.

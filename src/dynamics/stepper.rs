@@ -7,7 +7,6 @@ use crate::dynamics::error::StepError;
 use crate::dynamics::newton_matrix::NewtonMatrix;
 use crate::dynamics::resolution::{Balance, turned};
 use crate::dynamics::singular_configurations;
-use crate::dynamics::singular_configurations::BeyondLaw;
 use crate::dynamics::solving::{Drive, Newton};
 use crate::dynamics::trajectory::{StepState, StepperReport};
 use crate::dynamics::updates::Updates;
@@ -69,7 +68,7 @@ impl<E: Equations> Steps<E> {
 
     /// The method that factorises.
     pub fn solver(&self) -> String {
-        self.updates.name()
+        self.updates.matrix.name()
     }
 
     /// Coordinates now, and the multipliers of the step that led away from the instant before.
@@ -162,7 +161,7 @@ impl<E: Equations> Steps<E> {
         self.equations.guess(h);
         let mut residuals = Vec::with_capacity(ITERATIONS);
         // A tangent of another step length is another matrix.
-        let newton = self.updates.newton();
+        let newton = self.updates.newton;
         let mut reused = newton == Newton::Modified && self.factored == Some(h);
         self.stale = reused;
         let mut contraction = self.updates.contraction();
@@ -218,16 +217,16 @@ impl<E: Equations> Steps<E> {
         self.equations.restore();
         let first = residuals.first().copied().unwrap_or(f64::NAN);
         let last = &residuals[residuals.len().saturating_sub(4)..];
+        let model = self.equations.model();
+        let [start, _] = self.equations.ends();
+        let short = singular_configurations::shortest(model, start);
         Err(StepError::NoConvergence {
             time: self.equations.now().time,
             step: h,
             residuals: last.iter().map(|r| r / first).collect(),
-            limit: limit.map(Box::new),
-            muscle: self.short_muscle(),
-            overflow: singular_configurations::overflow(
-                self.equations.model(),
-                self.equations.now().scalars,
-            ),
+            limit,
+            muscle: short.map(|(name, stretch)| (name.to_owned(), stretch)),
+            overflow: singular_configurations::overflow(model, self.equations.now().scalars),
         })
     }
 
@@ -289,7 +288,7 @@ impl<E: Equations> Steps<E> {
         let model = self.equations.model();
         let [start, end] = self.equations.ends();
         if let Some(muscle) = singular_configurations::reversed(model, start, end) {
-            let muscle = self.muscle_name(muscle);
+            let muscle = model.system.muscles[muscle].name.clone();
             return Some(StepError::Reversed { time, step, muscle });
         }
         if let Some(part) = singular_configurations::beyond_law(model, end) {
@@ -328,16 +327,9 @@ impl<E: Equations> Steps<E> {
         })
     }
 
-    /// The muscle that a failure at this instant is laid to: its name and stretch.
-    fn short_muscle(&self) -> Option<(String, f64)> {
-        let [start, _] = self.equations.ends();
-        let (muscle, stretch) = singular_configurations::shortest(self.equations.model(), start)?;
-        Some((self.muscle_name(muscle), stretch))
-    }
-
     /// The muscle or block that a failure is laid to, as its law is near its limit at this instant, or has no energy at the end of the step that was tried
     /// where forces do not exist.
-    fn part_near_limit(&mut self, is_finite: bool) -> Option<BeyondLaw> {
+    fn part_near_limit(&mut self, is_finite: bool) -> Option<String> {
         if !is_finite {
             self.equations.place_end();
         }
@@ -347,10 +339,6 @@ impl<E: Equations> Steps<E> {
             false => singular_configurations::beyond_law(model, end),
         };
         beyond.or_else(|| singular_configurations::near_limit(model, start))
-    }
-
-    fn muscle_name(&self, muscle: usize) -> String {
-        self.equations.model().system.muscles[muscle].name.clone()
     }
 }
 
@@ -571,9 +559,9 @@ impl<E: Equations> Steps<E> {
         match &from.tangent {
             Some(tangent) => {
                 self.factored = tangent.step;
-                self.updates.take(self.equations.model(), tangent)
+                self.updates.matrix.restore(self.equations.model(), tangent)
             }
-            None => self.updates.newton() == Newton::Full,
+            None => self.updates.newton == Newton::Full,
         }
     }
 }

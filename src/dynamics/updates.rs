@@ -11,7 +11,6 @@ use crate::dynamics::solving::Newton;
 use crate::dynamics::tangent::Tangent;
 use crate::dynamics::trajectory::TangentState;
 use crate::math::{IsOver, Stopped};
-use crate::model::Model;
 use crate::sparse::Singular;
 use crate::sparse::multigrid::NoSolution;
 use nalgebra::{DMatrix, DVector};
@@ -24,7 +23,8 @@ const LEFT_OUT: f64 = 0.3;
 #[derive(Debug)]
 pub(super) struct Updates {
     pub(super) matrix: NewtonMatrix,
-    newton: Newton,
+    /// Occasions at which the tangent is factorised.
+    pub(super) newton: Newton,
     anderson: Anderson,
     /// Size of each unknown; infinite where it says nothing about convergence.
     scales: Vec<f64>,
@@ -41,27 +41,12 @@ impl Updates {
         }
     }
 
-    /// Returns the occasions at which the tangent is factorised.
-    pub(super) fn newton(&self) -> Newton {
-        self.newton
-    }
-
-    /// The method that solves.
-    pub(super) fn name(&self) -> String {
-        self.matrix.name()
-    }
-
     /// Writes the tangent that is kept, and the step that it belongs to.
     pub(super) fn keep(&mut self, step: Option<f64>, to: &mut Option<TangentState>) {
         let to = to.get_or_insert_default();
         // Newton's method makes a new one in every iteration.
         to.step = step.filter(|_| self.newton == Newton::Modified);
         self.matrix.keep(to.step.is_some(), to);
-    }
-
-    /// Restores a saved tangent. Returns false if it does not fit these equations.
-    pub(super) fn take(&mut self, model: &Model, from: &TangentState) -> bool {
-        self.matrix.restore(model, from)
     }
 
     /// Begins an attempt of a step.

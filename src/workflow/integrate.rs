@@ -4,7 +4,7 @@ use crate::control::problem::{BoundaryState, Simulation, Voltages};
 use crate::control::resolve_start;
 use crate::dynamics::{
     DiscreteTrajectory, Drive, Inputs, Integrator, Lengths, Solving, StepControl, StepError,
-    StepState, TimeGrid, go_on,
+    StepState, go_on,
 };
 use crate::math::in_order;
 use crate::model::{Model, System};
@@ -180,7 +180,7 @@ pub fn integrate_on(
         }
         .run(begun, observer),
         None => {
-            let lengths = Lengths::Equal(TimeGrid { h, steps });
+            let lengths = Lengths::Equal { h, steps };
             let drive: &dyn Drive = match &controlled {
                 Some(controlled) => controlled,
                 None => &drive,

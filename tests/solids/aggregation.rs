@@ -5,7 +5,7 @@ use crate::common::stacks::{LENGTH, cubes, rubber, scattered, sliding, thin_laye
 use crate::multigrid::{MULTIGRID, apart, compare, motion};
 use nalgebra::Vector3;
 use proboscis::dynamics::{
-    DiscreteTrajectory, Lengths, MultigridUse, Solving, Start, TimeGrid, go_on, stable_equilibrium,
+    DiscreteTrajectory, Lengths, MultigridUse, Solving, Start, go_on, stable_equilibrium,
     stable_equilibrium_by,
 };
 use proboscis::model::Model;
@@ -96,7 +96,7 @@ fn a_resumed_motion_has_the_same_bits_on_any_number_of_threads() {
     let model = Model::new(system(vec![solid]), None, 0.5, &[]).unwrap();
     let start = Start::at_rest(&model, model.coordinates_at(&[]));
     let go = |begun: DiscreteTrajectory, steps: usize, threads: usize| {
-        let lengths = Lengths::Equal(TimeGrid { h: 0.5, steps });
+        let lengths = Lengths::Equal { h: 0.5, steps };
         let drive = |_: f64, _: f64| vec![3e5];
         let observer = |_: &_| ControlFlow::Continue(());
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);

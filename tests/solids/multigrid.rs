@@ -5,8 +5,8 @@ use crate::common::solid::{DRIVEN, system};
 use crate::common::stacks::{LENGTH, cubes, rubber, sliding, stack, thin_layers};
 use nalgebra::Vector3;
 use proboscis::dynamics::{
-    DiscreteTrajectory, Lengths, MultigridUse, Newton, Solving, Start, TimeGrid, go_on,
-    simulate_by, stable_equilibrium, stable_equilibrium_by,
+    DiscreteTrajectory, Lengths, MultigridUse, Newton, Solving, Start, go_on, simulate_by,
+    stable_equilibrium, stable_equilibrium_by,
 };
 use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{ElementKind, Potential, Solid, System};
@@ -161,7 +161,7 @@ fn a_resumed_motion_has_the_same_bits() {
     .unwrap();
     let start = Start::at_rest(&model, model.coordinates_at(&[]));
     let go = |begun: DiscreteTrajectory, steps: usize| {
-        let lengths = Lengths::Equal(TimeGrid { h: 0.5, steps });
+        let lengths = Lengths::Equal { h: 0.5, steps };
         let drive = |_: f64, _: f64| vec![3e5];
         let observer = |_: &_| ControlFlow::Continue(());
         let (discrete, failure) = go_on(MULTIGRID, &model, begun, lengths, &drive, observer);
