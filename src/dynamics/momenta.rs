@@ -278,10 +278,9 @@ impl Start {
         let mut instant = model.action.map.placed(&z);
         let momentum = model.action.momentum(&mut instant, rates);
         Self {
-            z,
             momentum,
             rates: Some(rates.to_vec()),
-            time: 0.0,
+            ..Self::at_rest(model, z)
         }
     }
 
@@ -290,38 +289,9 @@ impl Start {
         let mut instant = model.action.map.placed(&z);
         let rates = rates(model, &mut instant, 0.0, &momentum);
         Self {
-            z,
             momentum,
             rates: Some(rates),
-            time: 0.0,
-        }
-    }
-
-    /// With a velocity of the centre of mass (mm/ms) and an angular velocity (rad/ms), both in the ground frame, of each body that is solved for;
-    /// nodes rest. What the coordinates do not let move counts as an impulse on its supports.
-    pub fn with_velocities(model: &Model, z: Vec<f64>, velocities: &[[Vector; 2]]) -> Self {
-        let map = &model.action.map;
-        let instant = map.placed(&z);
-        let poses = model.condensed_poses(&instant);
-        let rate = |vector: &MaterialVector| {
-            let terms = vector.terms.iter().map(|term| match term.carrier {
-                Carrier::Body(b) => {
-                    let [velocity, spin] = velocities[b];
-                    velocity * term.centre + spin.cross(&(poses[b].directors * term.directors))
-                }
-                _ => Vector::zeros(),
-            });
-            terms.sum()
-        };
-        let rates: Vec<Vector> = model.vectors.iter().map(rate).collect();
-        let momenta = vector_momenta(model, &instant.x, &rates);
-        let mut momentum = vec![0.0; model.coordinate_count()];
-        map.pull_back(&instant.columns, &momenta, &mut momentum);
-        Self {
-            z,
-            momentum,
-            rates: None,
-            time: 0.0,
+            ..Self::at_rest(model, z)
         }
     }
 }

@@ -32,7 +32,7 @@ use nalgebra::{Matrix3, SVector, Vector3};
 use proboscis::coordinates::Configuration;
 use proboscis::dynamics::trajectory::{Observations, Trajectory};
 use proboscis::dynamics::{DiscreteTrajectory, Start, simulate};
-use proboscis::kinematics::Pose;
+use proboscis::kinematics::{Carrier, MaterialVector, Pose};
 use proboscis::model::Model;
 use proboscis::model::system::{
     Attachment, Body, ElectricConstants, Joint, JointKind, Marker, Material, Muscle, Shape, System,
@@ -40,6 +40,39 @@ use proboscis::model::system::{
 };
 use serde_json::Value;
 use std::ops::ControlFlow;
+
+/// A start with a velocity of the centre of mass (mm/ms) and an angular velocity (rad/ms), both in the ground frame, of each body that is solved for;
+/// nodes rest. What the coordinates do not let move counts as an impulse on its supports.
+pub(crate) fn with_velocities(
+    model: &Model,
+    z: Vec<f64>,
+    velocities: &[[Vector3<f64>; 2]],
+) -> Start {
+    let map = &model.action.map;
+    let instant = map.placed(&z);
+    let poses = model.condensed_poses(&instant);
+    let rate = |vector: &MaterialVector| {
+        let terms = vector.terms.iter().map(|term| match term.carrier {
+            Carrier::Body(b) => {
+                let [velocity, spin] = velocities[b];
+                velocity * term.centre + spin.cross(&(poses[b].directors * term.directors))
+            }
+            _ => Vector3::zeros(),
+        });
+        terms.sum()
+    };
+    let rates: Vec<Vector3<f64>> = model.vectors.iter().map(rate).collect();
+    let mut momenta = vec![Vector3::zeros(); rates.len()];
+    for term in &model.action.intervals.terms {
+        term.momentum(&instant.x, &rates, &mut momenta);
+    }
+    let mut momentum = vec![0.0; model.coordinate_count()];
+    map.pull_back(&instant.columns, &momenta, &mut momentum);
+    Start {
+        momentum,
+        ..Start::at_rest(model, z)
+    }
+}
 
 /// A reference solution from `tests/reference`.
 pub(crate) fn reference(name: &str) -> Value {

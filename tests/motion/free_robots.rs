@@ -3,12 +3,11 @@
 use crate::common::systems::satellite;
 use crate::common::{
     at_reference, bare, body, column, columns, distance, joint, motion, placed, richardson,
+    with_velocities,
 };
 use nalgebra::{Rotation3, Vector3};
 use proboscis::dynamics::trajectory::Trajectory;
-use proboscis::dynamics::{
-    DiscreteTrajectory, Integrator, Solving, Start, observations, simulate_by,
-};
+use proboscis::dynamics::{DiscreteTrajectory, Integrator, Solving, observations, simulate_by};
 use proboscis::model::system::{JointKind, System};
 use proboscis::model::{Coordinates, Model};
 use std::ops::ControlFlow;
@@ -26,7 +25,7 @@ fn both(
 ) -> ([(Model, DiscreteTrajectory); 2], f64) {
     let runs = BOTH.map(|coordinates| {
         let model = Model::new(system.clone(), Some(coordinates), h, &[]).unwrap();
-        let start = Start::with_velocities(&model, at_reference(&model), velocities);
+        let start = with_velocities(&model, at_reference(&model), velocities);
         let solving = Solving {
             integrator,
             ..Solving::default()
@@ -132,7 +131,7 @@ fn a_heavy_top_nutates_as_another_program_says() {
             let h = time / steps as f64;
             let model = Model::new(scene.clone(), None, h, &[]).unwrap();
             assert_eq!(model.coordinates, Coordinates::Reduced);
-            let start = Start::with_velocities(
+            let start = with_velocities(
                 &model,
                 at_reference(&model),
                 &[[Vector3::zeros(), axis * 0.25]],

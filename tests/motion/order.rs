@@ -1,6 +1,8 @@
 //! Order two in the step, against exact motions and by self-convergence.
 
-use crate::common::{at_reference, bare, body, columns, joint, motion, richardson, spin, trunk};
+use crate::common::{
+    at_reference, bare, body, columns, joint, motion, richardson, spin, trunk, with_velocities,
+};
 use nalgebra::{Matrix3, Vector3};
 use proboscis::dynamics::{Start, observations};
 use proboscis::model::system::{JointKind, System};
@@ -25,7 +27,7 @@ fn ends(
         let model = Model::new(scene.clone(), Some(coordinates), h, &[]).unwrap();
         let z = at_reference(&model);
         let velocity = omega.cross(&model.reference()[0].centre);
-        let start = Start::with_velocities(&model, z, &[[velocity, omega]]);
+        let start = with_velocities(&model, z, &[[velocity, omega]]);
         let discrete = motion(&model, &start, h, n, &[]);
         let last = crate::common::placed(&model, &discrete.z[n]);
         model.poses(&last)[0].centre

@@ -3,7 +3,7 @@
 use crate::common::cases::{control, joints};
 use crate::common::random::Random;
 use crate::common::systems::{ball, satellite};
-use crate::common::{at_reference, joint, placed, trunk};
+use crate::common::{at_reference, joint, placed, trunk, with_velocities};
 use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 use proboscis::control::problem::Duration;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
@@ -145,7 +145,7 @@ fn velocities_of_bodies_are_rates_of_coordinates() {
             [moved(&centre(1)), angular],
             [moved(&ball) + other.cross(&(centre(2) - ball)), other],
         ];
-        let by_twists = Start::with_velocities(&model, z, &twists);
+        let by_twists = with_velocities(&model, z, &twists);
         let size = by_twists
             .momentum
             .iter()
