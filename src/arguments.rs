@@ -2,10 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::choices::{Export, View};
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use clap_complete::Shell;
 use proboscis::app::{CommandInput, PageWanted, ProgressDisplay, RunIn};
+use proboscis::report::viewpoint::Viewpoint;
 use proboscis::report::{Figures, quoting};
 use proboscis::sweep::Shard;
 use proboscis::workflow::accuracy::AccuracyTarget;
@@ -165,6 +165,14 @@ pub(crate) enum File {
     Sweep,
 }
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Export {
+    /// motion.gltf: an animation of bodies, muscles, markers and elastic blocks, for Blender and other programs.
+    Gltf,
+    /// parts.pvd: bodies, muscles and markers for ParaView; elastic blocks always have such files.
+    Paraview,
+}
+
 #[derive(Args, Debug)]
 pub(crate) struct Variants {
     /// The study file.
@@ -254,7 +262,7 @@ pub(crate) struct Problem {
     max_seconds: Option<f64>,
     /// Viewpoint of figures.
     #[arg(long, value_name = "VIEW", default_value = "oblique")]
-    view: View,
+    view: Viewpoint,
     /// Also write the motion in this format.
     #[arg(long, value_name = "FORMAT")]
     export: Vec<Export>,
@@ -326,7 +334,7 @@ impl Problem {
             output: self.output,
             max_seconds: self.max_seconds,
             figures: Figures {
-                view: self.view.viewpoint(),
+                view: self.view,
                 gltf: self.export.contains(&Export::Gltf),
                 parts: self.export.contains(&Export::Paraview),
             },

@@ -1,7 +1,6 @@
 //! The command line: reads arguments, runs the command, writes its answer, and sets the exit status.
 
 mod arguments;
-mod choices;
 #[cfg(target_os = "linux")]
 mod one_core;
 mod words;
@@ -12,10 +11,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use arguments::{Arguments, Command, File, New, typed};
-use choices::run_in;
 use clap::{CommandFactory, Parser};
 use clap_complete::Shell;
-use proboscis::app::{self, CommandError, CommandInput, CommandOutput, Template};
+use proboscis::app::{self, CommandError, CommandInput, CommandOutput, RunIn, Template};
 use proboscis::files::{lines, message, note, printable_json};
 use proboscis::stop;
 use proboscis::study::study;
@@ -119,7 +117,10 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
                 max_iterations,
                 ..problem.request()
             };
-            let run_in = run_in(processes);
+            let run_in = match processes {
+                true => RunIn::Processes,
+                false => RunIn::Threads,
+            };
             output_of(json, &request, |request| match starts {
                 Some(starts) => app::solve_from_starts(request, None, starts, seed, run_in),
                 None if once => app::run_once(request),

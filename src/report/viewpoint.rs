@@ -8,17 +8,18 @@ use crate::report::body::extent_points;
 use crate::report::skins::{Skins, shown};
 use crate::report::view::View;
 
-/// Position of the viewer.
+/// Position of the viewer, who sees x to the right along the z and y axes, z to the left along the x axis and downwards along the y axis.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Viewpoint {
-    /// In front, to the right and above, so that no axis is hidden.
+    /// View from the front, right and above.
     #[default]
     Oblique,
-    /// On the z axis: x to the right, y upwards.
+    /// Along the z axis, y upwards.
     Front,
-    /// On the x axis: z to the left, y upwards.
+    /// Along the x axis, y upwards.
     Side,
-    /// On the y axis: x to the right, z downwards.
+    /// Along the y axis, from above.
     Top,
     /// In the direction in which motion and shape of the system together are smallest.
     Auto,
