@@ -5,6 +5,7 @@ use crate::control::problem::{Duration, Task};
 use crate::files::changes::Changes;
 use crate::files::study::{MethodSpec, ReferenceSpec, RefineSpec, StudySpec};
 use crate::files::{Document, Loaded, SceneError, Scope, read_problem};
+use crate::math::refuse;
 use crate::study::measure::{self, StudyMeasure, StudyTask};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -83,9 +84,8 @@ pub fn read_study(path: &Path) -> Result<Study, SceneError> {
     let document = Document::read(path)?;
     let spec: StudySpec = document.parse()?;
     let scope = Scope::of(&document);
-    if spec.methods.is_empty() {
-        return Err(scope.key("methods").wrong("no method", "1 method or more"));
-    }
+    refuse!(if spec.methods.is_empty(), scope.key("methods");
+        found "no method", expected "1 method or more");
     let names: Vec<String> = spec.methods.iter().map(|m| m.name.clone()).collect();
     let place = |index: usize| scope.key("methods").index(index).key("name");
     scope.unique(&names, &[], place)?;
@@ -163,13 +163,9 @@ fn points(
 
 fn own(methods: &[Method], scope: &Scope<'_>) -> Result<Reference, SceneError> {
     let few = |method: &Method| method.points.len() < POINTS;
-    if let Some(index) = methods.iter().position(few) {
-        let found = format!("{} points", methods[index].points.len());
-        let expected = format!(
-            "{POINTS} or more, from which a limit is extrapolated, or a \"reference\" in the study"
-        );
-        return Err(scope.key("methods").index(index).wrong(found, expected));
-    }
+    refuse!(if let Some(index) = methods.iter().position(few), scope.key("methods").index(index);
+        found format!("{} points", methods[index].points.len()),
+        expected format!("{POINTS} or more, from which a limit is extrapolated, or a \"reference\" in the study"));
     Ok(Reference::Own)
 }
 
@@ -191,11 +187,9 @@ fn of_one(
         None => (methods[method].points.len(), scope.clone()),
         Some(_) => (points.len(), scope.key("refine")),
     };
-    if count < POINTS {
-        let expected = format!("{POINTS} or more, from which a limit is extrapolated");
-        let points = if count == 1 { "point" } else { "points" };
-        return Err(place.wrong(format!("{count} {points}"), expected));
-    }
+    refuse!(if count < POINTS, place;
+        found format!("{count} {}", if count == 1 { "point" } else { "points" }),
+        expected format!("{POINTS} or more, from which a limit is extrapolated"));
     Ok(Reference::Of { method, points })
 }
 
@@ -221,26 +215,18 @@ fn same_question(
             let expected = "a simulation, an equilibrium or optimal control of one motion";
             return Err(place.wrong("a problem of another kind", expected));
         };
-        if let Task::Equilibrium(task) = &point.loaded.task
-            && task.path.is_some()
-        {
-            let found = "a path of equilibria";
-            return Err(place.wrong(found, "one equilibrium: no \"path\""));
-        }
+        let is_path = matches!(&point.loaded.task, Task::Equilibrium(task) if task.path.is_some());
+        refuse!(if is_path, place;
+            found "a path of equilibria", expected "one equilibrium: no \"path\"");
         let &mut (kind, length) = first.get_or_insert((asked, duration));
-        if kind != asked {
-            let (found, expected) = (asked.name(), kind.name());
-            return Err(place.wrong(found, format!("{expected}, as of the first point")));
-        }
+        refuse!(if kind != asked, place;
+            found asked.name(), expected format!("{}, as of the first point", kind.name()));
         // The same number, but for the way it is written.
         let differ = |(a, b): (f64, f64)| (a - b).abs() > 1e-9 * a;
-        if length.zip(duration).is_some_and(differ) {
-            let [found, expected] = [duration, length].map(|d| d.unwrap_or_default() / 1e3);
-            return Err(place.wrong(
-                format!("a duration of {found} s"),
-                format!("{expected} s, as of the first point"),
-            ));
-        }
+        let [found, expected] = [duration, length].map(|d| d.unwrap_or_default() / 1e3);
+        refuse!(if length.zip(duration).is_some_and(differ), place;
+            found format!("a duration of {found} s"),
+            expected format!("{expected} s, as of the first point"));
     }
     let (asked, _) = first.expect("there is a method, and each has a point");
     Ok(asked)
@@ -302,33 +288,25 @@ fn measures(
     };
     let wanted = named.iter().enumerate().map(|(index, &measure)| {
         let place = scope.key("measures").index(index);
-        if named[..index].contains(&measure) {
-            return Err(place.wrong(format!("{:?} again", measure.key()), "each measure once"));
-        }
-        if !all.contains(&measure) {
-            let names: Vec<_> = all.iter().map(|m| format!("{:?}", m.key())).collect();
-            let found = format!("{:?}, which {} does not have", measure.key(), asked.name());
-            return Err(place.wrong(found, format!("one of {}", names.join(", "))));
-        }
+        refuse!(if named[..index].contains(&measure), place;
+            found format!("{:?} again", measure.key()), expected "each measure once");
+        let names: Vec<_> = all.iter().map(|m| format!("{:?}", m.key())).collect();
+        refuse!(if !all.contains(&measure), place;
+            found format!("{:?}, which {} does not have", measure.key(), asked.name()),
+            expected format!("one of {}", names.join(", ")));
         Ok(measure)
     });
     let wanted: Vec<_> = wanted.collect::<Result<_, _>>()?;
-    match wanted.is_empty() {
-        true => Err(scope
-            .key("measures")
-            .wrong("an empty list", "1 measure or more")),
-        false => Ok(wanted),
-    }
+    refuse!(if wanted.is_empty(), scope.key("measures");
+        found "an empty list", expected "1 measure or more");
+    Ok(wanted)
 }
 
 fn runs(spec: &StudySpec, scope: &Scope<'_>) -> Result<usize, SceneError> {
-    match spec.runs {
-        None => Ok(RUNS),
-        Some(runs @ RUNS..) => Ok(runs),
-        Some(runs) => Err(scope
-            .key("runs")
-            .wrong(runs.to_string(), format!("{RUNS} runs or more"))),
-    }
+    let runs = spec.runs.unwrap_or(RUNS);
+    refuse!(if runs < RUNS, scope.key("runs");
+        found runs, expected format!("{RUNS} runs or more"));
+    Ok(runs)
 }
 
 /// A path without `..` and `.`, where it leads to the same file.
@@ -346,23 +324,19 @@ fn sizes(refine: &RefineSpec, scope: &Scope<'_>) -> Result<(Vec<String>, Vec<f64
     let Some((first, values)) = refine.set.iter().next() else {
         return Err(set.wrong("no override", "1 override or more"));
     };
-    if values.is_empty() {
-        return Err(set.key(first).wrong("an empty list", "1 value or more"));
-    }
+    refuse!(if values.is_empty(), set.key(first);
+        found "an empty list", expected "1 value or more");
     for (key, others) in &refine.set {
-        if others.len() != values.len() {
-            let found = format!("{} values", others.len());
-            let expected = format!("{}, as many as of {first:?}", values.len());
-            return Err(set.key(key).wrong(found, expected));
-        }
+        refuse!(if others.len() != values.len(), set.key(key);
+            found format!("{} values", others.len()),
+            expected format!("{}, as many as of {first:?}", values.len()));
     }
     let (labels, numbers, place) = match (&refine.sizes, refine.set.len()) {
         (Some(sizes), _) => {
             let place = scope.key("sizes");
-            if sizes.len() != values.len() {
-                let found = format!("{} sizes", sizes.len());
-                return Err(place.wrong(found, format!("{}, one per point", values.len())));
-            }
+            refuse!(if sizes.len() != values.len(), place;
+                found format!("{} sizes", sizes.len()),
+                expected format!("{}, one per point", values.len()));
             let labels = sizes.iter().map(|&size| label(size)).collect();
             (labels, sizes.clone(), place)
         }
@@ -381,11 +355,9 @@ fn sizes(refine: &RefineSpec, scope: &Scope<'_>) -> Result<(Vec<String>, Vec<f64
             return Err(scope.wrong("several overrides that are refined together", expected));
         }
     };
-    if let Some(k) = numbers.iter().position(|size| *size <= 0.0) {
-        return Err(place
-            .index(k)
-            .wrong(numbers[k].to_string(), "a positive size"));
-    }
+    let negative = numbers.iter().position(|size| *size <= 0.0);
+    refuse!(if let Some(k) = negative, place.index(k);
+        found numbers[k], expected "a positive size");
     let grows = numbers.windows(2).all(|pair| pair[0] < pair[1]);
     let falls = numbers.windows(2).all(|pair| pair[0] > pair[1]);
     // A length or a tolerance that grows is refined the other way round.

@@ -11,7 +11,7 @@ use crate::files::sweep::{CombineSpec, RangeSpec, SpacingSpec, SweepSpec, VarySp
 use crate::files::{
     Columns, Document, SceneError, Scope, each_entry_once, each_once, read_problem,
 };
-use crate::math::Random;
+use crate::math::{Random, refuse};
 
 /// Most variants of a sweep, and values of a range.
 const MOST: usize = 100_000;
@@ -131,10 +131,9 @@ fn varied(
     spec: &SweepSpec,
     scope: &Scope<'_>,
 ) -> Result<(Vec<String>, Vec<Vec<Value>>), SceneError> {
-    if spec.vary.is_empty() {
-        let expected = "places with values, or a \"table\" beside \"problem\"";
-        return Err(scope.wrong("nothing that varies", expected));
-    }
+    refuse!(if spec.vary.is_empty(), scope;
+        found "nothing that varies",
+        expected "places with values, or a \"table\" beside \"problem\"");
     let read: BTreeMap<&String, Values> = spec
         .vary
         .iter()
@@ -167,11 +166,9 @@ fn varied(
             let lists = lists()?;
             let first = lists[0].len();
             for (place, list) in read.keys().zip(&lists) {
-                if list.len() != first {
-                    let found = format!("{} values", list.len());
-                    let expected = format!("{first}, as in the first list");
-                    return Err(scope.key(place).wrong(found, expected));
-                }
+                refuse!(if list.len() != first, scope.key(place);
+                    found format!("{} values", list.len()),
+                    expected format!("{first}, as in the first list"));
             }
             limited(Some(first))?;
             let row = |i: usize| lists.iter().map(|list| list[i].clone()).collect();
@@ -204,17 +201,14 @@ fn of_table(
     table: &str,
     scope: &Scope<'_>,
 ) -> Result<(Vec<String>, Vec<Vec<Value>>), SceneError> {
-    if !spec.vary.is_empty() {
-        let place = scope.key("vary");
-        return Err(place.wrong("places with values", "either \"vary\" or \"table\""));
-    }
+    refuse!(if !spec.vary.is_empty(), scope.key("vary");
+        found "places with values", expected "either \"vary\" or \"table\"");
     let scope = scope.key("table");
     let columns = Columns::read(table, &scope)?;
     let (headers, rows) = columns.written();
-    if rows.is_empty() || rows.len() > MOST {
-        let found = format!("{} lines below the headers", rows.len());
-        return Err(scope.wrong(found, format!("1 to {MOST} variants")));
-    }
+    refuse!(if rows.is_empty() || rows.len() > MOST, scope;
+        found format!("{} lines below the headers", rows.len()),
+        expected format!("1 to {MOST} variants"));
     let value = |cell: &str| serde_json::from_str(cell).unwrap_or_else(|_| cell.into());
     let row = |record: &csv::StringRecord| record.iter().map(value).collect();
     Ok((
@@ -291,18 +285,15 @@ impl Range {
         };
         let (from, unit) = end("from", &written.from)?;
         let (to, other) = end("to", &written.to)?;
-        if unit != other {
-            let expected = "the unit of \"from\"";
-            return Err(scope.key("to").wrong(written.to.to_string(), expected));
-        }
-        if written.spacing == SpacingSpec::Logarithmic && !(from > 0.0 && to > 0.0) {
-            let found = format!("{from} to {to}");
-            return Err(scope.wrong(found, "values above zero for logarithmic spacing"));
-        }
-        if let Some(count) = written.count.filter(|count| !(2..=MOST).contains(count)) {
-            let expected = format!("a number of values from 2 to {MOST}");
-            return Err(scope.key("count").wrong(count.to_string(), expected));
-        }
+        refuse!(if unit != other, scope.key("to");
+            found written.to, expected "the unit of \"from\"");
+        let is_logarithmic = written.spacing == SpacingSpec::Logarithmic;
+        refuse!(if is_logarithmic && !(from > 0.0 && to > 0.0), scope;
+            found format!("{from} to {to}"),
+            expected "values above zero for logarithmic spacing");
+        let wrong = written.count.filter(|count| !(2..=MOST).contains(count));
+        refuse!(if let Some(count) = wrong, scope.key("count");
+            found count, expected format!("a number of values from 2 to {MOST}"));
         Ok(Self {
             ends: [from, to],
             unit,
