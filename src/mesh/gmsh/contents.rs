@@ -2,6 +2,7 @@
 //!
 //! The lines of a file with their numbers, and the words of a line.
 
+use crate::math::refuse;
 use crate::mesh::error::{MeshError, MeshPlace};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -44,13 +45,9 @@ pub(super) fn insert(
     number: u64,
     place: Vector3<f64>,
 ) -> Result<(), MeshError> {
-    match nodes.insert(number, place) {
-        None => Ok(()),
-        Some(_) => Err(line.error(
-            format!("a second node {number}"),
-            "a number of its own for each node",
-        )),
-    }
+    refuse!(if nodes.insert(number, place).is_some(), line;
+        found format!("a second node {number}"), expected "a number of its own for each node");
+    Ok(())
 }
 
 /// Remaining lines of a file; empty lines do not count.
@@ -110,21 +107,19 @@ impl<'a> Lines<'a> {
     /// The next line, which continues a section: a count that is too large is found at the section's end.
     pub(super) fn record(&mut self, expected: &str) -> Result<Line<'a>, MeshError> {
         let line = self.next(expected)?;
-        if line.text.starts_with('$') {
-            let found = format!("{} before as many lines as were counted", quoted(line.text));
-            return Err(line.error(found, expected));
-        }
+        refuse!(if line.text.starts_with('$'), line;
+            found format!("{} before as many lines as were counted", quoted(line.text)),
+            expected expected);
         Ok(line)
     }
 
     /// The line that ends a section.
     pub(super) fn end(&mut self, name: &str) -> Result<(), MeshError> {
         let line = self.next(name)?;
-        if line.text == name {
-            return Ok(());
-        }
-        let found = format!("{} after as many lines as were counted", quoted(line.text));
-        Err(line.error(found, name))
+        refuse!(if line.text != name, line;
+            found format!("{} after as many lines as were counted", quoted(line.text)),
+            expected name);
+        Ok(())
     }
 
     /// Leaves out a section up to the line that ends it.
@@ -140,13 +135,13 @@ impl<'a> Lines<'a> {
             number: self.number.max(1),
             text: "",
         };
-        line.error("the end of the file", expected)
+        line.wrong("the end of the file", expected)
     }
 }
 
 impl<'a> Line<'a> {
     /// This line is not as expected.
-    pub(super) fn error(&self, found: impl Into<String>, expected: impl Into<String>) -> MeshError {
+    pub(super) fn wrong(&self, found: impl Into<String>, expected: impl Into<String>) -> MeshError {
         MeshPlace::Line(self.file.to_owned(), self.number).wrong(found, expected)
     }
 
@@ -164,7 +159,7 @@ impl<'a> Words<'a> {
     /// The next word.
     pub(super) fn word(&mut self) -> Result<&'a str, MeshError> {
         let word = self.left.next();
-        word.ok_or_else(|| self.line.error(quoted(self.line.text), self.shape))
+        word.ok_or_else(|| self.line.wrong(quoted(self.line.text), self.shape))
     }
 
     /// The next word as a number.
@@ -172,26 +167,24 @@ impl<'a> Words<'a> {
         let word = self.word()?;
         word.parse().map_err(|_| {
             let found = format!("{} in {}", quoted(word), quoted(self.line.text));
-            self.line.error(found, self.shape)
+            self.line.wrong(found, self.shape)
         })
     }
 
     /// The next three words as a place.
     pub(super) fn place(&mut self) -> Result<Vector3<f64>, MeshError> {
         let place = Vector3::new(self.number()?, self.number()?, self.number()?);
-        if place.iter().all(|x: &f64| x.is_finite()) {
-            return Ok(place);
-        }
-        let expected = "finite coordinates";
-        Err(self.line.error(quoted(self.line.text), expected))
+        let is_finite = place.iter().all(|x: &f64| x.is_finite());
+        refuse!(if !is_finite, self.line;
+            found quoted(self.line.text), expected "finite coordinates");
+        Ok(place)
     }
 
     /// Nothing is left.
     pub(super) fn end(&mut self) -> Result<(), MeshError> {
-        match self.left.next() {
-            None => Ok(()),
-            Some(_) => Err(self.line.error(quoted(self.line.text), self.shape)),
-        }
+        refuse!(if self.left.next().is_some(), self.line;
+            found quoted(self.line.text), expected self.shape);
+        Ok(())
     }
 }
 
@@ -240,7 +233,7 @@ pub(super) fn shape(kind: usize, line: &Line<'_>) -> Result<(usize, usize), Mesh
             };
             let expected = "8-node hexahedra (type 5) bounded by 4-node quadrangles (type 3), 2-node lines (type 1) and \
                  points (type 15): mesh with transfinite or extruded, recombined volumes of first order";
-            Err(line.error(found, expected))
+            Err(line.wrong(found, expected))
         }
     }
 }

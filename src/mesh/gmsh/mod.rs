@@ -14,6 +14,7 @@ mod version4;
 
 use super::Mesh;
 use super::error::MeshError;
+use crate::math::refuse;
 pub use contents::UNGROUPED;
 use contents::{Contents, Group};
 use contents::{Line, Lines, quoted};
@@ -76,8 +77,8 @@ fn format(lines: &mut Lines<'_>) -> Result<Format, MeshError> {
     let first = lines.next("$MeshFormat")?;
     match first.text {
         "$MeshFormat" => {}
-        "$NOD" => return Err(first.error("format 1", FORMATS)),
-        other => return Err(first.error(quoted(other), "$MeshFormat, the head of a .msh file")),
+        "$NOD" => return Err(first.wrong("format 1", FORMATS)),
+        other => return Err(first.wrong(quoted(other), "$MeshFormat, the head of a .msh file")),
     }
     let line = lines.next("the version of the format")?;
     let mut words = line.words("the version, 0 for ASCII, and the size of a number: 4.1 0 8");
@@ -88,13 +89,11 @@ fn format(lines: &mut Lines<'_>) -> Result<Format, MeshError> {
     let format = match version {
         "2" | "2.0" | "2.1" | "2.2" => Format::Two,
         "4.1" => Format::Four,
-        other => return Err(line.error(format!("format {other}"), FORMATS)),
+        other => return Err(line.wrong(format!("format {other}"), FORMATS)),
     };
-    if binary != "0" {
-        let expected =
-            "an ASCII file: save with Mesh.Binary = 0 (gmsh -save … -setnumber Mesh.Binary 0)";
-        return Err(line.error("a binary file", expected));
-    }
+    refuse!(if binary != "0", line;
+        found "a binary file",
+        expected "an ASCII file: save with Mesh.Binary = 0 (gmsh -save … -setnumber Mesh.Binary 0)");
     lines.end("$EndMeshFormat")?;
     Ok(format)
 }
@@ -108,13 +107,12 @@ fn contents(lines: &mut Lines<'_>, format: Format) -> Result<Contents, MeshError
             "$PhysicalNames" => contents.names.extend(physical_names(lines)?),
             "$Entities" if format == Format::Four => {
                 once(&line, entities.is_some())?;
-                if elements.is_some() {
-                    return Err(line.error("$Entities after $Elements", "it before them"));
-                }
+                refuse!(if elements.is_some(), line;
+                    found "$Entities after $Elements", expected "it before them");
                 entities = Some(version4::entities(lines)?);
             }
             "$PartitionedEntities" => {
-                return Err(line.error("a partitioned mesh", "a mesh of one partition"));
+                return Err(line.wrong("a partitioned mesh", "a mesh of one partition"));
             }
             "$Nodes" => {
                 once(&line, nodes.is_some())?;
@@ -133,7 +131,7 @@ fn contents(lines: &mut Lines<'_>, format: Format) -> Result<Contents, MeshError
             }
             other => match other.strip_prefix('$') {
                 Some(name) if !name.starts_with("End") => lines.skip(&format!("$End{name}"))?,
-                _ => return Err(line.error(quoted(other), SECTION)),
+                _ => return Err(line.wrong(quoted(other), SECTION)),
             },
         }
     }
@@ -143,9 +141,7 @@ fn contents(lines: &mut Lines<'_>, format: Format) -> Result<Contents, MeshError
 }
 
 fn once(line: &Line<'_>, again: bool) -> Result<(), MeshError> {
-    if again {
-        return Err(line.error(format!("a second {}", line.text), "it once"));
-    }
+    refuse!(if again, line; found format!("a second {}", line.text), expected "it once");
     Ok(())
 }
 
@@ -168,14 +164,14 @@ fn physical_names(lines: &mut Lines<'_>) -> Result<BTreeMap<Group, String>, Mesh
         });
         match name {
             Some(name) if name.contains(char::is_control) => {
-                return Err(line.error(quoted(name), "a name without control characters"));
+                return Err(line.wrong(quoted(name), "a name without control characters"));
             }
             Some(name) if dimension <= 3 => {
                 if !name.is_empty() {
                     names.insert((dimension, number.unsigned_abs()), name.to_owned());
                 }
             }
-            _ => return Err(line.error(quoted(line.text), shape)),
+            _ => return Err(line.wrong(quoted(line.text), shape)),
         }
     }
     lines.end("$EndPhysicalNames")?;

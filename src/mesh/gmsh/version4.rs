@@ -1,6 +1,7 @@
 //! Entities, nodes and elements of format 4.1: blocks belong to entities, which carry the numbers of physical groups.
 
 use super::contents::{Element, Line, Lines, insert};
+use crate::math::refuse;
 use crate::mesh::error::MeshError;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
@@ -95,18 +96,14 @@ pub(super) fn elements(
         let (dimension, corners) = super::contents::shape(words.number()?, &line)?;
         let count: usize = words.number()?;
         words.end()?;
-        if entity.0 != dimension {
-            let found = format!(
-                "elements of dimension {dimension} in an entity of dimension {}",
-                entity.0
-            );
-            return Err(line.error(found, "equal dimensions"));
-        }
+        refuse!(if entity.0 != dimension, line;
+            found format!("elements of dimension {dimension} in an entity of dimension {}", entity.0),
+            expected "equal dimensions");
         let groups = match entities {
             None => &[][..],
             Some(entities) => entities.get(&entity).ok_or_else(|| {
                 let found = format!("the entity {} of dimension {dimension}", entity.1);
-                line.error(found, "an entity that $Entities lists")
+                line.wrong(found, "an entity that $Entities lists")
             })?,
         };
         for _ in 0..count {
@@ -144,11 +141,8 @@ fn head<'a>(lines: &mut Lines<'a>) -> Result<(Line<'a>, usize, usize), MeshError
 }
 
 fn agree(head: &Line<'_>, found: usize, total: usize) -> Result<(), MeshError> {
-    if found == total {
-        return Ok(());
-    }
-    Err(head.error(
-        format!("a total of {total}"),
-        format!("{found}, as many as the blocks hold"),
-    ))
+    refuse!(if found != total, head;
+        found format!("a total of {total}"),
+        expected format!("{found}, as many as the blocks hold"));
+    Ok(())
 }
