@@ -150,14 +150,17 @@ fn a_job_that_lost_its_client_is_collected_and_not_done_again() {
     );
     assert_eq!(tasks(folder), 2);
 
-    // A server that does not know the job gets what is left.
+    // A server that does not know the job gets what is left: a variant whose files are whole is not made again.
     fs::write(&deaf, "").unwrap();
     fs::remove_dir_all(folder.join("it's out")).unwrap();
     assert_eq!(sweep(folder).0, 1);
+    assert_eq!(tasks(folder), 4);
+    let mut variants = fs::read_dir(folder.join("it's out/variants")).unwrap();
+    fs::remove_dir_all(variants.next().unwrap().unwrap().path()).unwrap();
     fs::write(folder.join("bin/name"), "another job").unwrap();
     fs::remove_file(&deaf).unwrap();
     assert_eq!(sweep(folder).0, 0);
-    assert_eq!(tasks(folder), 6);
+    assert_eq!(tasks(folder), 5);
 }
 
 /// A server that is killed and begins again from its journal has lost the end of some tasks, and hands them out once more.
