@@ -114,9 +114,10 @@ impl Comparison {
         }
     }
 
-    /// Takes back the comparison of columns.
+    /// Takes back the comparison of columns, ascending.
     pub(super) fn forget(&mut self, columns: &[usize]) {
-        self.pairs.retain(|pair| !columns.contains(&pair.column));
+        let is_kept = |pair: &Pair| columns.binary_search(&pair.column).is_err();
+        self.pairs.retain(is_kept);
     }
 
     /// Columns with entries above the tolerance.

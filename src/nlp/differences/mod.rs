@@ -101,12 +101,11 @@ pub fn check_with_sizes(
             }
         }
         let doubted = derivatives.doubted();
-        for group in compared.into_iter().filter(|group| group.len() > 1) {
-            if group.iter().any(|j| doubted.binary_search(j).is_ok()) {
-                derivatives.forget(&group);
-                alone.extend(group);
-            }
-        }
+        let is_doubted = |j: &usize| doubted.binary_search(j).is_ok();
+        compared.retain(|group: &Vec<usize>| group.len() > 1 && group.iter().any(is_doubted));
+        alone.extend(compared.into_iter().flatten());
+        alone.sort_unstable();
+        derivatives.forget(&alone);
         groups = alone.into_iter().map(|j| vec![j]).collect();
     }
     report.checked = n - report.left - report.unchecked.len();
@@ -181,9 +180,9 @@ impl Derivatives {
         true
     }
 
-    /// Takes back the comparison of a group of columns.
-    fn forget(&mut self, group: &[usize]) {
-        self.0.iter_mut().for_each(|(_, of)| of.forget(group));
+    /// Takes back the comparison of columns, ascending.
+    fn forget(&mut self, columns: &[usize]) {
+        self.0.iter_mut().for_each(|(_, of)| of.forget(columns));
     }
 
     /// Columns with an entry above the tolerance, ascending.
