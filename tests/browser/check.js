@@ -245,7 +245,8 @@ async function picture(page, run, told) {
   expect(wrong === 0, `${told}: ${wrong} of ${faces} triangles have normals that are not theirs`);
   expect(run.faces ? faces === 22 * run.faces : faces === 0, `${told}: ${faces} triangles of faces in 11 pictures`);
   const resolution = () => page.evaluate(() => window.proboscis.scene.picture.renderer.getPixelRatio());
-  await page.waitForTimeout(500);
+  const rests = () => { const { renderer, finest } = window.proboscis.scene.picture; return finest >= 2 && renderer.getPixelRatio() === finest; };
+  await page.waitForFunction(rests, null, { timeout: 20000 }).catch(() => {});
   const finest = await page.evaluate(() => window.proboscis.scene.picture.finest);
   expect(finest >= 2 && (await resolution()) === finest, `${told}: at rest ${await resolution()} pixels along a px, not ${finest}`);
   if (!run.moves) return;
@@ -375,7 +376,9 @@ async function charts(page, run, told, screen) {
   for (const title of run.charts) expect(titles.includes(title), `${told}: no chart of ${title} among ${titles}`);
   for (const plot of await page.locator(".plot").all()) {
     await plot.scrollIntoViewIfNeeded();
-    await page.waitForTimeout(40);
+    const drawn = (one) => window.proboscis.charts.made.some(({ plot, chart, clock, cursor }) => plot === one && chart && (!clock || cursor.style.display === "block"));
+    // What is not drawn fails below.
+    await page.waitForFunction(drawn, await plot.elementHandle(), { timeout: 20000 }).catch(() => {});
   }
   const left = await page.evaluate(() => {
     const areas = window.proboscis.charts.made.filter((one) => one.clock && one.chart).map((one) => [one.plot.getBoundingClientRect().left, one.chart.chartArea.left, one.cursor.style.display]);
@@ -425,7 +428,7 @@ async function slide(page, run, told) {
   }
   // A key hides its curve, whatever size is shown.
   await slider.scrollIntoViewIfNeeded();
-  await page.waitForTimeout(150);
+  await page.waitForFunction(() => window.proboscis.charts.made.find((one) => one.size !== undefined).chart);
   const key = page.locator("section[aria-label=Disturbance] .panel").first().locator("button", { hasText: "without feedback" });
   await key.click();
   const hidden = () => page.evaluate(() => window.proboscis.charts.made.find((one) => one.size !== undefined).chart.data.datasets.filter((one) => one.hidden).map((one) => one.label).join());
