@@ -1,6 +1,7 @@
 //! Constants of formulas: numbers, or functions of free parameters.
 
 use crate::math::Number;
+use std::array;
 use std::ops::{Add, Div, Mul, Sub};
 use std::sync::Arc;
 
@@ -30,12 +31,7 @@ impl Coefficient {
     /// The same times a factor.
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
-        match self {
-            Self::Parameter(place, powers) => {
-                Self::Parameter(*place, powers.map(|power| power * factor))
-            }
-            other => other * &factor.into(),
-        }
+        self * &factor.into()
     }
 
     /// Its square root.
@@ -101,10 +97,14 @@ impl Add for &Coefficient {
         use Coefficient::{Number, Parameter, Sum};
         match (self, other) {
             (Number(a), Number(b)) => Number(a + b),
+            (Number(0.0), other) | (other, Number(0.0)) => other.clone(),
             (Parameter(place, [a, line @ ..]), Number(b))
             | (Number(b), Parameter(place, [a, line @ ..])) => {
                 let [x, y, z] = *line;
                 Parameter(*place, [a + b, x, y, z])
+            }
+            (Parameter(place, a), Parameter(other, b)) if place == other => {
+                Parameter(*place, array::from_fn(|power| a[power] + b[power]))
             }
             _ => Sum(Arc::new([self.clone(), other.clone()])),
         }
@@ -123,10 +123,11 @@ impl Mul for &Coefficient {
     type Output = Coefficient;
 
     fn mul(self, other: Self) -> Coefficient {
-        use Coefficient::{Number, Product};
+        use Coefficient::{Number, Parameter, Product};
         match (self, other) {
             (Number(a), Number(b)) => Number(a * b),
             (Number(_), _) => other * self,
+            (Parameter(place, a), Number(b)) => Parameter(*place, a.map(|power| power * b)),
             _ => Product(Arc::new([self.clone(), other.clone()])),
         }
     }

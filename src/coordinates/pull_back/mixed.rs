@@ -72,6 +72,8 @@ impl Mixed {
         to: &mut Pulled<'_>,
     ) {
         for side in (0..2).filter(|&side| to.target.mixed[side] != usize::MAX) {
+            let (columns, columns_l) = (to.columns[side], to.columns_l[side]);
+            let values = &mut to.values[to.target.mixed[side]..];
             for entry in &self.list {
                 let (place, value) = match *entry {
                     MixedEntry::Articulated {
@@ -80,11 +82,10 @@ impl Mixed {
                         stride,
                         place,
                     } => {
-                        let along = |columns: [&[f64]; 2], m: &[[Vector; 2]]| {
-                            dot(columns[side], column, stride, &m[slot as usize][side])
-                        };
-                        let value = along(to.columns, m);
-                        let more = plain.map(|plain| along(to.columns_l, plain));
+                        let value = dot(columns, column, stride, &m[slot as usize][side]);
+                        let more = plain.map(|plain| {
+                            dot(columns_l, column, stride, &plain[slot as usize][side])
+                        });
                         (place, more.map_or(value, |more| value + more))
                     }
                     MixedEntry::Linear {
@@ -94,7 +95,7 @@ impl Mixed {
                         place,
                     } => (place, factor * m[slot as usize][side][component as usize]),
                 };
-                to.values[to.target.mixed[side] + place as usize] += value;
+                values[place as usize] += value;
             }
         }
     }
