@@ -365,7 +365,7 @@ fn pairs_of_block() -> Vec<Pair> {
 fn by_hand(system: &System, volts: &[f64]) -> Variant {
     let mut variant = called("by hand", system.clone(), volts, Coordinates::Reduced);
     let model = &mut variant.model;
-    let reference = model.reference().to_vec();
+    let reference = model.reference.to_vec();
     let list = model.vectors.clone();
     let at = |vector: MaterialVector| {
         let found = list.iter().position(|v| *v == vector);

@@ -42,26 +42,17 @@ impl Mesh {
 
     /// Nodes with `|x_axis − value| ≤ tolerance`, ascending; axes are 0, 1, 2 for x, y, z, lengths in mm.
     pub fn nodes_on_plane(&self, axis: usize, value: f64, tolerance: f64) -> Vec<usize> {
-        self.nodes_where(|x| (x[axis] - value).abs() <= tolerance)
-    }
-
-    /// Nodes inside the closed box from `lower` to `upper` in mm, ascending.
-    pub fn select(&self, lower: &Vector3<f64>, upper: &Vector3<f64>) -> Vec<usize> {
-        self.nodes_where(|x| (0..3).all(|axis| (lower[axis]..=upper[axis]).contains(&x[axis])))
+        let nodes = self.nodes.iter().enumerate();
+        nodes
+            .filter(|(_, x)| (x[axis] - value).abs() <= tolerance)
+            .map(|(node, _)| node)
+            .collect()
     }
 
     /// The node nearest to a place in mm, the first of several; none where there are no nodes.
     pub fn nearest_node(&self, place: &Vector3<f64>) -> Option<usize> {
         let distance = |&node: &usize| (self.nodes[node] - place).norm_squared();
         (0..self.nodes.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
-    }
-
-    fn nodes_where(&self, holds: impl Fn(&Vector3<f64>) -> bool) -> Vec<usize> {
-        let nodes = self.nodes.iter().enumerate();
-        nodes
-            .filter(|(_, x)| holds(x))
-            .map(|(node, _)| node)
-            .collect()
     }
 }
 

@@ -57,7 +57,7 @@ pub struct Model {
     /// Time that scales multipliers: the action holds −h₀ λ·g, in ms.
     pub multiplier_time: f64,
     pub(super) graph: Graph,
-    pub(super) reference: Vec<Pose>,
+    pub reference: Vec<Pose>,
     /// Closing constraints that are left out.
     pub loops: Loops,
     /// Terms of components, and what calls for them.
@@ -72,11 +72,6 @@ pub struct Model {
 }
 
 impl Model {
-    /// Poses of the presolved bodies in the reference configuration.
-    pub fn reference(&self) -> &[Pose] {
-        &self.reference
-    }
-
     /// Number of coordinates of an instant, without multipliers.
     pub fn coordinate_count(&self) -> usize {
         self.action.map.coordinates

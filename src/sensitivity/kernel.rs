@@ -58,7 +58,6 @@ pub(super) struct Change {
 pub struct Kernel<N> {
     pub(super) conditions: Conditions<N>,
     linear: Saddle,
-    moved: f64,
 }
 
 impl<N: Nlp> Kernel<N> {
@@ -84,7 +83,6 @@ impl<N: Nlp> Kernel<N> {
         let mut out = Self {
             linear: Saddle::of(&conditions)?,
             conditions,
-            moved: 0.0,
         };
         out.approach()?;
         out.check_bounds()?;
@@ -104,7 +102,6 @@ impl<N: Nlp> Kernel<N> {
             let Conditions { x, y, .. } = &mut self.conditions;
             let size = largest(y).max(1.0);
             let step = largest(&dx).max(largest(&dy) / size);
-            self.moved = self.moved.max(step);
             if step <= ROUNDING {
                 break;
             }
@@ -160,11 +157,6 @@ impl<N: Nlp> Kernel<N> {
             Some(margin) => Err(NoSensitivity::Undecided(self.conditions.words(margin.of))),
             None => Ok(()),
         }
-    }
-
-    /// Greatest step of Newton's method to the optimum, in the scales of the program.
-    pub fn moved(&self) -> f64 {
-        self.moved
     }
 
     /// The variables at the optimum.

@@ -82,7 +82,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
     };
     let h = TIME / intervals as f64;
     let (model, mut boundary) = BoundaryConditions::resolve(&scene, &problem, h).unwrap();
-    let centre = MaterialVector::point(Some(0), &(axis * 2.0), model.reference());
+    let centre = MaterialVector::point(Some(0), &(axis * 2.0), &model.reference);
     let (plain, _) = BoundaryConditions::resolve(&scene, &problem, h).unwrap();
     let model = with_control(model, Force { direction: axis }, &centre);
     boundary.rest = [Some(vec![0.0]), Some(vec![0.0])];

@@ -139,7 +139,7 @@ fn a_double_integrator_pays_n2_over_n2_minus_1() {
         assert!((exact - expected).abs() < 1e-12);
         for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
             let (effort, force) = optimum(&scene, coordinates, goal, time, n as usize, |model| {
-                let centre = MaterialVector::point(Some(0), &Vector3::zeros(), model.reference());
+                let centre = MaterialVector::point(Some(0), &Vector3::zeros(), &model.reference);
                 with_control(model, Force { direction: axis }, &centre)
             });
             println!("{n} {coordinates:?}: {effort} against {exact}");
@@ -184,7 +184,7 @@ fn a_quarter_turn_in_directors_costs_the_discrete_optimum() {
     for (n, expected) in table {
         for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
             let (effort, _) = optimum(&scene, coordinates, goal, time, n, |model| {
-                let director = MaterialVector::direction(Some(0), &Vector3::x(), model.reference());
+                let director = MaterialVector::direction(Some(0), &Vector3::x(), &model.reference);
                 with_control(model, Torque, &director)
             });
             println!("{n} {coordinates:?}: {effort:.9} against {expected:.9}");

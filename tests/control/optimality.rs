@@ -10,6 +10,7 @@ use proboscis::ipopt::{self, Options, SolverResult, Start};
 use proboscis::model::system::System;
 use proboscis::model::{Coordinates, Model};
 use proboscis::nlp::Nlp;
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 /// Data of a solved problem.
@@ -299,7 +300,10 @@ fn both_coordinates_have_the_same_optimum_and_costates() {
             };
             let l = of(&reduced, reduced.model.coordinate_count());
             let y = of(&redundant, redundant.model.coordinate_count());
-            let expected = reduced.model.redundant_rates(&reduced.discrete.z[k], &l);
+            let expected = redundant
+                .model
+                .rates_at(&reduced.discrete.z[k], &l, &BTreeMap::new())
+                .unwrap();
             let size = expected.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
             seen = seen.max(size);
             error = expected

@@ -272,7 +272,7 @@ fn a_spherical_joint_in_its_plane_is_a_hinge() {
         );
         let model = model.unwrap();
         let omega = Vector3::z() * 2.0;
-        let rates = spin(&model.reference()[0], omega.cross(&bob.centre), omega);
+        let rates = spin(&model.reference[0], omega.cross(&bob.centre), omega);
         let start = Start::with_rates(&model, at_reference(&model), &rates);
         let discrete = motion(&model, &start, 0.01, 300, &[]);
         Trajectory::from_discrete(&model, &discrete)

@@ -36,7 +36,7 @@ fn a_free_body_keeps_its_momenta_while_it_tumbles() {
     // Nearly about the axis of the middle moment of inertia: the body turns over again and again.
     let omega = directors * Vector3::new(0.02, 3.0, 0.01);
     let velocity = Vector3::new(0.4, 0.1, -0.3);
-    let rates = spin(&model.reference()[0], velocity, omega);
+    let rates = spin(&model.reference[0], velocity, omega);
     let start = Start::with_rates(&model, at_reference(&model), &rates);
     let steps = 2000;
     let discrete = motion(&model, &start, h, steps, &[]);
@@ -118,7 +118,7 @@ fn bodies_that_pull_at_each_other_keep_their_momenta() {
     }
     let h = 2.0;
     let model = Model::new(scene, Some(Coordinates::Redundant), h, &[]).unwrap();
-    let [a, b] = [model.reference()[0], model.reference()[1]];
+    let [a, b] = [model.reference[0], model.reference[1]];
     let mut rates = spin(&a, at(0.05, 0.0, 0.1), at(0.0, 0.01, 0.02));
     rates.extend(spin(&b, at(-0.03, 0.1, 0.0), at(0.01, 0.0, -0.01)));
     let start = Start::with_rates(&model, at_reference(&model), &rates);
@@ -153,7 +153,7 @@ fn a_top_keeps_its_momentum_about_the_vertical() {
     let scene = bare(vec![top], vec![tip], Some(Vector3::new(0.0, 0.0, -9.81)));
     let model = Model::new(scene, Some(Coordinates::Redundant), h, &[]).unwrap();
     let omega = axis * 120.0 + Vector3::new(1.0, 2.0, 3.0);
-    let rates = spin(&model.reference()[0], omega.cross(&(axis * 0.075)), omega);
+    let rates = spin(&model.reference[0], omega.cross(&(axis * 0.075)), omega);
     let start = Start::with_rates(&model, at_reference(&model), &rates);
     let steps = 1000;
     let discrete = motion(&model, &start, h, steps, &[]);

@@ -43,7 +43,7 @@ fn four_bars(n: usize) -> System {
 /// The bars with a speed of 1 m/s at their tops.
 fn pushed(linkage: &Model, n: usize) -> Start {
     let mut rates = Vec::new();
-    for (b, pose) in linkage.reference().iter().enumerate() {
+    for (b, pose) in linkage.reference.iter().enumerate() {
         let turn = Vector3::z() * -1.0;
         let (velocity, turn) = match b <= n {
             true => (turn.cross(&Vector3::new(0.0, 0.5, 0.0)), turn),

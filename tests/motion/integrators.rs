@@ -196,7 +196,7 @@ fn variational_methods_conserve_the_angular_momentum_of_a_free_body() {
     let scene = bare(vec![free], Vec::new(), None);
     let h = 0.05;
     let model = Model::new(scene, Some(Coordinates::Redundant), h, &[]).unwrap();
-    let pose = model.reference()[0];
+    let pose = model.reference[0];
     let (omega, velocity) = (Vector3::new(0.4, 1.1, -0.7), Vector3::new(0.1, 0.0, 0.2));
     let start = Start::with_rates(&model, at_reference(&model), &spin(&pose, velocity, omega));
     let climb = |integrator| {

@@ -126,7 +126,7 @@ fn the_first_row_is_the_start() {
             for muscle in &model.system.muscles {
                 for end in [&muscle.from, &muscle.to] {
                     let place = end.body.map_or(end.at, |b| {
-                        let rest = model.reference()[b];
+                        let rest = model.reference[b];
                         poses[b].point(&rest.local(&end.at))
                     });
                     moment += place * (0.5 * muscle.mass().unwrap());

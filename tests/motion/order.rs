@@ -26,7 +26,7 @@ fn ends(
         let h = time / n as f64;
         let model = Model::new(scene.clone(), Some(coordinates), h, &[]).unwrap();
         let z = at_reference(&model);
-        let velocity = omega.cross(&model.reference()[0].centre);
+        let velocity = omega.cross(&model.reference[0].centre);
         let start = with_velocities(&model, z, &[[velocity, omega]]);
         let discrete = motion(&model, &start, h, n, &[]);
         let last = crate::common::placed(&model, &discrete.z[n]);
@@ -161,7 +161,7 @@ fn a_top_precesses_steadily() {
 
     let h = 1e-3;
     let model = Model::new(scene, Some(Coordinates::Redundant), h, &[]).unwrap();
-    let pose = model.reference()[0];
+    let pose = model.reference[0];
     let rates = spin(&pose, cone.omega().cross(&pose.centre), cone.omega());
     let start = Start::with_rates(&model, at_reference(&model), &rates);
     let seen = observations(&model, &motion(&model, &start, h, 200, &[]));

@@ -80,7 +80,7 @@ fn in_a_row(kind: JointKind) -> Vec<JointKind> {
 /// Rates of the directors of both bodies, of which the joint between them rests.
 fn director_rates(model: &Model, kind: JointKind, rates: &[f64]) -> Vec<f64> {
     let (screws, _) = kind.screws();
-    let poses = model.reference().iter();
+    let poses = model.reference.iter();
     let of = |pose: &proboscis::kinematics::Pose| {
         let (mut velocity, mut omega) = (Vector3::zeros(), Vector3::zeros());
         for (screw, &rate) in screws.iter().zip(rates) {
@@ -257,7 +257,7 @@ fn a_spatial_slider_crank_on_a_universal_joint_moves_as_published() {
     assert_eq!(model.coordinates, Coordinates::Redundant);
     assert!(model.loops.is_empty() && model.loops.mobility == Some(1));
     let of_rod = Vector3::new(1.92, -0.96, 0.48);
-    let [crank, rod, block] = [0, 1, 2].map(|b| &model.reference()[b]);
+    let [crank, rod, block] = [0, 1, 2].map(|b| &model.reference[b]);
     let turn = 6.0 * x;
     let passes = turn.cross(&(ball - hinge)) + of_rod.cross(&(rod.centre - ball));
     let rates = [

@@ -22,7 +22,7 @@ fn a_conical_pendulum_circles_at_its_speed() {
             let h = time / n as f64;
             let model = Model::new(scene.clone(), Some(Coordinates::Redundant), h, &[]).unwrap();
             let rates = spin(
-                &model.reference()[0],
+                &model.reference[0],
                 Vector3::z().cross(&centre) * omega,
                 Vector3::z() * omega,
             );

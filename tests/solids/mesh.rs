@@ -206,11 +206,6 @@ fn nodes_are_found_by_place() {
     assert_eq!(mesh.nearest_node(&Vector3::new(1.9, 1.2, 0.6)), Some(26));
     assert_eq!(mesh.nearest_node(&Vector3::new(1.0, 0.5, 0.25)), Some(13));
     assert_eq!(Mesh::default().nearest_node(&Vector3::zeros()), None);
-    let lower = Vector3::new(0.5, 0.5, -1.0);
-    assert_eq!(
-        mesh.select(&lower, &Vector3::new(2.0, 1.0, 0.0)),
-        [4, 5, 7, 8]
-    );
     assert_eq!(
         mesh.nodes_on_plane(0, 1.05, 0.1),
         mesh.nodes_on_plane(0, 1.0, 0.0)

@@ -17,13 +17,6 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 impl Model {
-    /// Rates of director coordinates at joint coordinates with given rates.
-    pub fn redundant_rates(&self, joints: &[f64], rates: &[f64]) -> Vec<f64> {
-        let moving = self.moving(joints, rates, &BTreeMap::new());
-        let instant = moving.expect("no body is named");
-        instant.w.iter().flat_map(|w| [w.x, w.y, w.z]).collect()
-    }
-
     /// Rates of the coordinates of the bodies at joint coordinates (by joint) with given rates, and velocities of the centre and
     /// of rotation of some bodies of the scene, both in the ground frame.
     ///

@@ -1,6 +1,5 @@
 //! Quantities that a problem may bound, follow, minimise or record: what is measured, at what time, and what of it.
 
-use crate::model::layout::variables::Size;
 use crate::model::quantities::what::{
     At, FieldPlace, Of, Pulling, Reaction, Region, What, joint_unit,
 };
@@ -184,16 +183,6 @@ impl Quantity {
                 (joint_unit(system, joint) == "rad").then_some(TAU)
             }
             _ => None,
-        }
-    }
-
-    /// Returns the typical size of its values: lengths or not.
-    pub fn size(&self, system: &System) -> Size {
-        match self.unit(system) {
-            "mm" if !(matches!(self.what, What::Joint { .. }) && self.of == Of::Step) => {
-                Size::Length
-            }
-            _ => Size::One,
         }
     }
 

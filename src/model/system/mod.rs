@@ -179,13 +179,6 @@ impl System {
             LoadPlace::Block { .. } => Vec::new(),
         }
     }
-
-    /// Returns the load that a source is.
-    pub fn load(&self, source: usize) -> Option<&Load> {
-        self.components
-            .loads
-            .get(source.checked_sub(self.first_load())?)
-    }
 }
 
 /// A joint at a point of the reference configuration.
