@@ -52,7 +52,6 @@ fn reads(quantity: &Quantity, parameter: &Parameter) -> bool {
             parameter.constants.iter().any(|c| c.constant.is_place())
         }
         What::Reaction { .. } | What::Charge(_) => true,
-        What::Tension(_) => quantity.is_step(),
         _ => false,
     }
 }

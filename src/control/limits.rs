@@ -70,11 +70,13 @@ impl Limits {
                 self.add_joint(joint, bounds, system);
             }
             What::Joint { .. } => self.add_rate(Quantity::step(what, h), bounds, name, length),
-            What::Tension(Pulling::Muscle(muscle)) => {
-                let unit = largest.unwrap_or(system.muscles[muscle].shear_force());
-                self.add_in(Quantity::of(what), unit, bounds, name);
+            What::Tension(part) => {
+                let typical = match part {
+                    Pulling::Muscle(muscle) => system.muscles[muscle].shear_force(),
+                    Pulling::Spring(_) | Pulling::Tendon(_) => 1.0,
+                };
+                self.add_in(Quantity::of(what), largest.unwrap_or(typical), bounds, name);
             }
-            What::Tension(_) => self.add_rate(Quantity::step(what, h), bounds, name, length),
             What::Stretch(_) => {
                 let squares = [min.max(0.0), max].map(|bound| bound * bound);
                 self.add(Quantity::of(what), squares, name);

@@ -12,7 +12,6 @@ mod maxwell_damper;
 mod muscle;
 mod of_square;
 mod one_sided;
-mod span_tension;
 mod spring;
 mod viscosity;
 
@@ -37,9 +36,8 @@ pub use maxwell_damper::{DamperDerivatives, MaxwellCell, MaxwellDamper};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
 pub use of_square::OfSquare;
 pub use one_sided::{Cable, CoordinateStops};
-pub use span_tension::SpanTension;
 pub use spring::{CoordinateSpring, JointAngle, JointDisplacement, LinearSpring, SpanDamper};
-pub use viscosity::{AngularDamper, CoordinateDamper, LinearDamper, ViscousCell, ViscousTension};
+pub use viscosity::{AngularDamper, CoordinateDamper, LinearDamper, ViscousCell};
 
 use crate::math::{Local, Number};
 use nalgebra::SVector;

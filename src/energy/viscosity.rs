@@ -20,24 +20,6 @@ pub struct ViscousCell<T = f64> {
 
 law!(ViscousCell { coefficient } of 9);
 
-/// Force `c (r̄·ṙ)/|r̄|³` along the span of a [`ViscousCell`] with the coefficient c, arguments: r̄ and ṙ. Positive where the span grows.
-#[derive(Clone, Copy, Debug)]
-pub struct ViscousTension<T = f64>(pub ViscousCell<T>);
-
-law!(ViscousTension { 0 } of 6);
-
-impl<T: Number> Energy<6, T> for ViscousTension<T> {
-    type Local<const ORDER: usize> = Jet<6, ORDER, T>;
-
-    const READINGS: usize = 2;
-
-    fn at<const ORDER: usize>(&self, p: &SVector<T, 6>, w: &SVector<T, 6>) -> Jet<6, ORDER, T> {
-        let inverse = Jet::dot(0, 0, p, w).recip();
-        let factor = inverse * inverse.sqrt() * self.0.coefficient;
-        Jet::dot(0, 3, p, w) * factor
-    }
-}
-
 impl<T: Number> Energy<9, T> for ViscousCell<T> {
     type Local<const ORDER: usize> = AlongSpan<T>;
 

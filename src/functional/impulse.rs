@@ -1,15 +1,21 @@
-//! Impulse of the forces of terms along a displacement of one end of an interval, as a quantity.
+//! Impulse of the forces of terms along a displacement of one end of an interval, or their mean force along a span, as a quantity.
 //!
 //! With the part S of the action in an interval and a displacement w of the vectors of one instant it is `m = ∇S·w`. For a constant w
 //! `∇m = ∇(∇S·w)` and `∇²m = ∇²(∇S·w)` are what terms give contracted with the direction w, virtual works included. For a turn
 //! `w_i = c e × x_j` with `f = ∇S` the sum has `∂m/∂x_j = c f_i × e` too, and `∂²m/∂x_j∂y = −c e × ∂f_i/∂y` for all y that x_i couples with.
 //!
-//! A span r, read in the middle of the interval, is shortened by `w = −c r/|r|` at both ends. Its force f is along it, so that `f·∂w = 0`: the sum
-//! has the derivatives of a constant w, and `∂²m/∂r∂r = (m/|r|²) (1 − r rᵀ/|r|²)` too.
+//! A span r, read in the middle of the interval of the length h, is shortened by `w = −c r/(h |r|)` at both ends, so that m is a mean force. Its
+//! force f is along it, so that `f·∂w = 0`: the sum has the derivatives of a constant w, and `∂²m/∂r∂r = (m/|r|²) P` with `P = 1 − r rᵀ/|r|²` too,
+//! also where free parameters move the ends: `r = r₀ + Σ c_a e_a` (functional/laws.rs). Such a force follows from S as `m = ∇S·w`, and by h as
+//!
+//! ```text
+//! ∂m/∂h = ∂S_h − m/h,     ∂²m/∂h² = ∂S_hh − 2 ∂S_h/h + 2 m/h²,     ∂S_h = ∇∂S/∂h·w,  ∂S_hh = ∇∂²S/∂h²·w .
+//! ```
 
+use crate::functional::curved::{Gradient, Square, each_once};
 use crate::functional::{
-    BlockMask, Blocks, Couplings, Functional, Horizon, Measure, Order, Outer, Output, Sample,
-    SumDerivatives, Term,
+    BlockMask, Blocks, Couplings, Functional, Horizon, Measure, Move, Order, Outer, Output, Sample,
+    Stencil, SumDerivatives, Term, TermKind,
 };
 use crate::math::{Matrix, Vector};
 use std::ops::Range;
@@ -27,13 +33,21 @@ pub enum Displacement {
         /// The turns.
         turns: Vec<Turn>,
     },
-    /// A span of which both ends come closer in both instants.
-    Shortening {
-        /// Its vector.
-        span: usize,
-        /// Factor c.
-        factor: f64,
-    },
+    /// A span whose ends come closer.
+    Shortening(Shortening),
+}
+
+/// A span of which both ends come closer at both instants, by the inverse of the length of the interval.
+#[derive(Clone, Debug)]
+pub struct Shortening {
+    /// Its vector r₀.
+    pub span: usize,
+    /// Factor c.
+    pub factor: f64,
+    /// Parameters that move its ends, scalars of the interval.
+    pub parameters: Vec<usize>,
+    /// Their moves.
+    pub moves: Vec<Move>,
 }
 
 /// A part `c e × x_j` of the displacement of a vector i.
@@ -60,8 +74,8 @@ pub struct Impulse {
     scalars_still: Vec<f64>,
     /// The end of the interval, 0 or 1, where it is displaced at one.
     side: usize,
-    /// The vector of a span that is shortened at both ends, and the factor.
-    shortened: Option<(usize, f64)>,
+    /// The span that is shortened at both ends, with the square of the derivatives of a component of it.
+    shortened: Option<(Shortening, Square)>,
     /// Vectors and scalars that the derivatives of the impulse belong to, each once.
     vectors: Vec<usize>,
     scalars: Vec<usize>,
@@ -90,11 +104,11 @@ impl Impulse {
         match displacement {
             Displacement::Shift(shift) => along = shift,
             Displacement::Turn { axis: e, turns: t } => (axis, turns) = (e, t),
-            Displacement::Shortening { span, factor } => shortened = Some((span, factor)),
+            Displacement::Shortening(span) => shortened = Some(span.with_square()),
         }
         let is_turned = |vector: usize| turns.iter().any(|turn| turn.of == vector);
         let is_moved = |vector: usize| {
-            let is_span = shortened.is_some_and(|(span, _)| span == vector);
+            let is_span = shortened.as_ref().is_some_and(|(of, _)| of.span == vector);
             along[vector] != Vector::zeros() || is_turned(vector) || is_span
         };
         let terms = terms.iter().filter_map(|term| term.reading(&is_moved));
@@ -106,11 +120,6 @@ impl Impulse {
             scalars: pairs,
             ..
         } = functional.couplings();
-        let once = |mut list: Vec<usize>| {
-            list.sort_unstable();
-            list.dedup();
-            list
-        };
         let of_pairs = full.iter().chain(isotropic).flat_map(|&(a, b)| [a, b]);
         let of_turns = turns.iter().map(|turn| turn.by);
         let of_pairs = of_pairs.chain(mixed.iter().map(|&(a, _)| a));
@@ -124,8 +133,8 @@ impl Impulse {
             turns.iter().enumerate().flat_map(of).collect()
         };
         Self {
-            vectors: once(of_pairs.chain(of_turns).collect()),
-            scalars: once(read.chain(mixed.iter().map(|&(_, s)| s)).collect()),
+            vectors: each_once(of_pairs.chain(of_turns).collect()),
+            scalars: each_once(read.chain(mixed.iter().map(|&(_, s)| s)).collect()),
             turned: [full, isotropic, mixed].map(|pairs| turned(pairs)),
             evaluation: Mutex::new(Evaluation {
                 along,
@@ -149,13 +158,6 @@ impl Impulse {
         }
     }
 
-    /// The shortened span in the middle of the interval.
-    fn span(&self, sample: &Sample<'_>) -> Option<(usize, Vector, f64)> {
-        let (span, factor) = self.shortened?;
-        let [a, b] = sample.vectors.map(|vectors| vectors[span]);
-        Some((span, (a + b) * 0.5, factor))
-    }
-
     /// The derivatives of the terms up to an order, those contracted with the displacement included.
     fn evaluated(&self, order: Order, sample: &Sample<'_>) -> MutexGuard<'_, Evaluation> {
         let lock = self.evaluation.lock();
@@ -168,8 +170,9 @@ impl Impulse {
             let x = sample.vectors[self.side][turn.by];
             along[turn.of] += self.axis.cross(&x) * turn.factor;
         }
-        if let Some((span, r, factor)) = self.span(sample) {
-            along[span] = r * (-factor / r.norm());
+        if let Some((of, _)) = &self.shortened {
+            let r = of.read(sample);
+            along[of.span] = r * (-of.factor / (sample.h * r.norm()));
         }
         let mut both = [&self.still[..], &self.still];
         both[self.sides()].fill(along);
@@ -238,6 +241,51 @@ impl Impulse {
     }
 }
 
+impl Shortening {
+    /// It, and the square of the derivatives of a component of the span.
+    fn with_square(self) -> (Self, Square) {
+        let moved = self.moves.iter().map(|one| one.vector);
+        let scalars = self.moves.iter().map(|one| self.parameters[one.parameter]);
+        let square = Square::new(moved.chain([self.span]).collect(), scalars.collect());
+        (self, square)
+    }
+
+    /// The vectors by which a parameter moves the span, in the middle of an interval: its scalar, and by how much it differs.
+    fn moved(&self, sample: &Sample<'_>) -> impl Iterator<Item = (&Move, usize, f64)> {
+        self.moves.iter().map(move |one| {
+            let scalar = self.parameters[one.parameter];
+            (one, scalar, sample.scalars[scalar] - one.at)
+        })
+    }
+
+    /// The span r.
+    fn read(&self, sample: &Sample<'_>) -> Vector {
+        let mut r = middle(self.span, sample);
+        for (one, _, by) in self.moved(sample) {
+            r += middle(one.vector, sample) * by;
+        }
+        r
+    }
+
+    /// Adds the gradient of its component along a vector.
+    fn add_gradient(&self, along: &Vector, sample: &Sample<'_>, to: &mut Gradient) {
+        for forces in &mut to.forces {
+            forces[self.span] += along * 0.5;
+        }
+        for (one, scalar, by) in self.moved(sample) {
+            for forces in &mut to.forces {
+                forces[one.vector] += along * (0.5 * by);
+            }
+            to.rows[scalar] += along.dot(&middle(one.vector, sample));
+        }
+    }
+}
+
+/// A vector in the middle of an interval.
+fn middle(vector: usize, sample: &Sample<'_>) -> Vector {
+    Stencil::Mid.of(vector).read(sample.h, sample.vectors)
+}
+
 /// Adds a multiple of some vectors or scalars of one list to those of another.
 macro_rules! add {
     ($places:expr, $from:expr, $factor:expr, $to:expr) => {
@@ -264,8 +312,8 @@ impl Measure for Impulse {
         for &(t, pair) in mixed {
             add(couplings.add_mixed(self.turns[t].by, own.mixed[pair].1));
         }
-        if let Some((span, _)) = self.shortened {
-            add(couplings.add_full(span, span));
+        if let Some((_, square)) = &self.shortened {
+            square.couple(couplings, slots);
         }
     }
 
@@ -287,7 +335,8 @@ impl Measure for Impulse {
     }
 
     fn reads_rates(&self) -> bool {
-        true
+        let mut terms = self.functional.terms.iter();
+        self.shortened.is_none() || terms.any(|term| term.kind() == TermKind::Dissipation)
     }
 
     fn value(&self, sample: &Sample<'_>) -> f64 {
@@ -301,7 +350,12 @@ impl Measure for Impulse {
             ..*sample
         };
         let evaluation = self.evaluated(Order::Hessian, &sample);
-        self.product(&evaluation.along, &evaluation.out.plain.horizon_forces)
+        let (along, plain) = (&evaluation.along, &evaluation.out.plain);
+        let by_action = self.product(along, &plain.horizon_forces);
+        match self.shortened {
+            Some(_) => by_action - self.product(along, &plain.forces) / sample.h,
+            None => by_action,
+        }
     }
 
     fn gradient(&self, sample: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]) {
@@ -330,26 +384,39 @@ impl Measure for Impulse {
             add!(&self.vectors, from, c, to);
         }
         add!(&self.scalars, own.rows, c, part.rows);
-        let mut slots = slots.iter().map(|&slot| slot as usize);
+        let own_slots = slots.len() - self.shortened.as_ref().map_or(0, |(_, of)| of.slots());
+        let (of_terms, of_square) = slots.split_at(own_slots);
+        let mut of_terms = of_terms.iter().map(|&slot| slot as usize);
         let mask = &sample.sides.blocks;
-        part.blocks.add(&own.blocks, c, &mut slots, mask);
-        self.add_turned_blocks(c, &plain.blocks, &mut slots, mask, &mut part.blocks);
-        if let Some(((_, r, _), slot)) = self.span(sample).zip(slots.next()) {
-            let m = self.product(&evaluation.along, &plain.forces);
-            let across = Matrix::identity() - r * r.transpose() / r.norm_squared();
-            let block = across * (0.25 * c * m / r.norm_squared());
-            let to = &mut part.blocks.full[slot];
-            (0..4)
-                .filter(|&side| mask[side])
-                .for_each(|side| to[side] += block);
+        part.blocks.add(&own.blocks, c, &mut of_terms, mask);
+        self.add_turned_blocks(c, &plain.blocks, &mut of_terms, mask, &mut part.blocks);
+        let m = self.product(&evaluation.along, &plain.forces);
+        if let Some((of, square)) = &self.shortened {
+            let r = of.read(sample);
+            for axis in 0..3 {
+                let across = Vector::ith(axis, 1.0) - r * (r[axis] / r.norm_squared());
+                let g = square.gradient(|g| of.add_gradient(&across, sample, g));
+                square.add(c * m / r.norm_squared(), &g, sample, of_square, part);
+            }
         }
-        if sample.horizon == Horizon::Free {
+        if sample.horizon == Horizon::Free && self.reads_rates() {
             self.add_turned(c, &plain.horizon_forces, &mut part.horizon_forces);
             for (to, from) in part.horizon_forces.iter_mut().zip(&own.horizon_forces) {
                 add!(&self.vectors, from, c, to);
             }
             add!(&self.scalars, own.horizon_rows, c, part.horizon_rows);
             part.horizon += c * own.horizon;
+            if self.shortened.is_some() {
+                let (h, m_h) = (
+                    sample.h,
+                    self.product(&evaluation.along, &plain.horizon_forces),
+                );
+                for (to, from) in part.horizon_forces.iter_mut().zip(&own.forces) {
+                    add!(&self.vectors, from, -c / h, to);
+                }
+                add!(&self.scalars, own.rows, -c / h, part.horizon_rows);
+                part.horizon += 2.0 * c / h * (m / h - m_h);
+            }
         }
     }
 }

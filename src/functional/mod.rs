@@ -14,6 +14,7 @@
 
 mod border;
 mod couplings;
+mod curved;
 mod finite_elements;
 mod formulas;
 mod group;
@@ -28,15 +29,15 @@ mod pressure;
 mod scaled;
 mod scatter;
 mod stencil;
-mod sum;
 mod term;
 mod viscous_elements;
 
 pub use couplings::{BlockMask, Blocks, Coupling, Couplings, ParameterOrder};
+pub use curved::Curved;
 pub use finite_elements::{Electrical, ElementField, FiniteElement, Variations, VariedElement};
 pub use formulas::Element;
 pub use group::Group;
-pub use impulse::{Displacement, Impulse, Turn};
+pub use impulse::{Displacement, Impulse, Shortening, Turn};
 pub use inertia::{Inertia, Mass};
 pub use kernel::{Kernel, Scatter};
 pub use laws::{LawElement, MOST_PARAMETERS, Move};
@@ -45,7 +46,6 @@ pub use paths::Path;
 pub use pressure::PressureFace;
 pub use scaled::{FreeConstant, ScaledElement};
 pub use stencil::{ScalarArg, Stencil, VectorArg};
-pub use sum::Sum;
 pub use term::{
     Functional, Horizon, Measure, Order, Outer, Output, Sample, SumDerivatives, Term, TermKind,
 };

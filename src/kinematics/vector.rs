@@ -232,6 +232,12 @@ impl Vectors {
         self.list.len() - 1
     }
 
+    /// Returns true if a vector of the list moves with a body, a node or a coordinate.
+    pub fn moves(&self, vector: usize) -> bool {
+        let mut parts = self.list[vector].terms.iter();
+        parts.any(|part| part.carrier != Carrier::Ground)
+    }
+
     /// All vectors.
     pub fn list(&self) -> &[MaterialVector] {
         &self.list

@@ -14,7 +14,7 @@ use proboscis::energy::{
     CoordinateStops, DielectricCell, ElasticCell, Energy, Gravity, JointAngle, JointDisplacement,
     LinearDamper, LinearSpring, MaxwellCell, MaxwellDamper, NeoHooke, Orthogonality, OutsideBox,
     PositionComponent, Projection, SectionInertia, SpanDamper, SquaredDistance, SquaredField,
-    ViscousCell, ViscousTension,
+    ViscousCell,
 };
 use proboscis::math::{Jet, Vector};
 
@@ -247,7 +247,6 @@ fn energies_have_the_derivatives_of_naive_formulas() {
     law("damper", &SpanDamper { coefficient: 1.4 }, 0.4, 1.2);
     let viscous = ViscousCell { coefficient: 1.4 };
     law("viscous", &viscous, 0.4, 1.2);
-    law("viscous tension", &ViscousTension(viscous), 0.4, 1.2);
     law(
         "angular damper",
         &AngularDamper { coefficient: 0.7 },

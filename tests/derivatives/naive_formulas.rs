@@ -9,7 +9,6 @@ use proboscis::energy::{
     JointDisplacement, LinearDamper, LinearSpring, MaxwellCell, MaxwellDamper, Multiple,
     Orthogonality, OutsideBox, PeakExcess, PositionComponent, Projection, ProjectionStep,
     SectionInertia, SpanDamper, SquaredDistance, SquaredField, SurfaceCharge, ViscousCell,
-    ViscousTension,
 };
 
 /// The naive formula of an energy.
@@ -130,15 +129,6 @@ impl Formula<9> for ViscousCell {
         // −1.5 η V₀ Λ̇ δΛ/Λ²; no length at rest is left in it.
         let of = |direction| along(r, direction, |r| stretch(r, 0.7));
         -of(v) * of(delta) / stretch(r, 0.7).powi(2) * self.coefficient
-    }
-}
-
-impl Formula<6> for ViscousTension {
-    fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; 6]) -> D {
-        // c ℓ̇/ℓ² of the length ℓ = |r|.
-        let (r, v) = (three(p, 0), three(p, 3));
-        let length = squared_length(r).sqrt();
-        along(r, v, |r| squared_length(r).sqrt()) / length.powi(2) * self.0.coefficient
     }
 }
 

@@ -31,15 +31,15 @@ fn bounded() -> (System, Control) {
         [
             Limit::new(What::Stretch(muscle), [0.2, 5.0]),
             Limit::below(What::Field(FieldPlace::Muscle(muscle)), 2e5),
-            Limit::new(What::Tension(Pulling::Muscle(muscle)), [min, max]),
         ]
     });
+    let limits = of_muscles.chain(flows).chain(tensions());
     let mut control = Control {
         parameters,
         goal: BoundaryState::Free,
         ..problem(&system, false, None)
     };
-    control.limits = of_muscles.chain(flows).collect();
+    control.limits = limits.collect();
     control.objective.quantities = [
         (Quantity::tension(Pulling::Muscle(0)), square(0.1)),
         (Quantity::tension(Pulling::Muscle(1)), square(0.0)),
@@ -54,6 +54,13 @@ fn bounded() -> (System, Control) {
     })
     .to_vec();
     (system, control)
+}
+
+/// Limits of the tensions of muscles, springs and a tendon.
+fn tensions() -> impl Iterator<Item = Limit> {
+    let springs = [Pulling::Spring(0), Pulling::Spring(1), Pulling::Tendon(0)];
+    let parts = (0..4).map(Pulling::Muscle).chain(springs);
+    parts.map(|part| Limit::new(What::Tension(part), [f64::NEG_INFINITY, 1e3]))
 }
 
 fn square(reference: f64) -> CostFunction {
@@ -114,7 +121,7 @@ fn limits_and_costs_are_those_of_the_system_made_with_their_values() {
     assert_are_those_of_the_system_made_anew(&system, &control, 100);
 }
 
-/// Places, regions and speeds of a marker, and a goal of its place.
+/// Places, regions and speeds of a marker, a goal of its place, and tensions of parts whose ends move.
 #[test]
 fn markers_are_where_parameters_move_them() {
     let (system, parameters) = lengthened();
@@ -135,7 +142,11 @@ fn markers_are_where_parameters_move_them() {
     let place = Place([Some(5.0), None, Some(3.0)]);
     let control = Control {
         parameters,
-        limits: limits.into_iter().chain([speed]).collect(),
+        limits: limits
+            .into_iter()
+            .chain([speed])
+            .chain(tensions())
+            .collect(),
         goal: BoundaryState::Markers {
             places: [(0, place)].into(),
             orientations: Default::default(),

@@ -9,7 +9,6 @@ use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::Read;
 use crate::model::construction::Construction;
 use crate::model::layout::internal::{InternalKind, Internals};
-use crate::model::system::Muscle;
 use crate::model::system::electrode_circuits::ElectrodeCircuit;
 use crate::model::terms::{Terms, mid, rate};
 use nalgebra::Vector3;
@@ -22,8 +21,8 @@ const WHY: &str = "circuit of";
 
 /// Terms of the circuits of the muscles of a scene, and of electrodes.
 pub(in crate::model) fn build(of: &Construction<'_>, terms: &mut Terms<'_>) {
-    for (m, (muscle, &span)) in of.system.muscles.iter().zip(of.spans).enumerate() {
-        circuit(muscle, m, span, of.internals, terms);
+    for m in 0..of.system.muscles.len() {
+        circuit(of, m, terms);
     }
     build_electrodes(&of.blocks.circuits, of.internals, terms);
     if !terms.is_of_motion() {
@@ -33,14 +32,9 @@ pub(in crate::model) fn build(of: &Construction<'_>, terms: &mut Terms<'_>) {
 }
 
 /// The electric energy of a charge, which is an internal coordinate, the source, and the resistor as its damper.
-fn circuit(
-    muscle: &Muscle,
-    index: usize,
-    span: usize,
-    internals: &Internals,
-    terms: &mut Terms<'_>,
-) {
-    let charge = internals.vector(InternalKind::Charge(index));
+pub(in crate::model) fn circuit(of: &Construction<'_>, index: usize, terms: &mut Terms<'_>) {
+    let (muscle, span) = (&of.system.muscles[index], of.spans[index]);
+    let charge = of.internals.vector(InternalKind::Charge(index));
     let (Some(circuit), Some(capacitance), Some(charge)) =
         (muscle.circuit, capacitance(muscle), charge)
     else {

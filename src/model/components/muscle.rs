@@ -10,6 +10,7 @@ use crate::model::layout::internal::{InternalKind, Internals};
 use crate::model::system::{Fidelity, Muscle};
 use crate::model::terms::{GRAVITY, Terms, UNRELAXED, mid, rate};
 use nalgebra::SVector;
+use std::borrow::Cow;
 
 const INERTIA: &str = "muscle inertia";
 const SECTION: &str = "section inertia";
@@ -31,16 +32,10 @@ pub(in crate::model) const CHARGES: &str = "muscle charges";
 
 /// Terms of the muscles of a scene, of which those of finite elements are blocks.
 pub(in crate::model) fn build(of: &Construction<'_>, terms: &mut Terms<'_>) {
-    for (m, (muscle, &span)) in of.system.muscles.iter().zip(of.spans).enumerate() {
+    for (m, muscle) in of.system.muscles.iter().enumerate() {
         if muscle.fidelity == Fidelity::Lumped {
-            match terms.is_of_motion() {
-                true => lumped(muscle, m, span, terms),
-                false => lumped(&muscle.at_rest(), m, span, terms),
-            }
-            match terms.is_instantaneous() {
-                true => unrelaxed(muscle, m, span, terms),
-                false => relaxation(muscle, m, span, of.internals, terms),
-            }
+            lumped(muscle, m, of.spans[m], terms);
+            relaxation(muscle, m, of.spans[m], of.internals, terms);
         }
     }
     terms.without_branches([MAXWELL_ELASTICITY, MAXWELL_VISCOSITY]);
@@ -48,10 +43,7 @@ pub(in crate::model) fn build(of: &Construction<'_>, terms: &mut Terms<'_>) {
 
 /// Between two points that do not move nothing is left of a muscle without voltage.
 fn lumped(muscle: &Muscle, source: usize, span: usize, terms: &mut Terms<'_>) {
-    // Behind a resistor a source drives a charge.
-    let is_direct = !muscle.is_behind_resistor() || !terms.is_of_motion();
-    let input = terms.input(source).filter(|_| is_direct);
-    if input.is_none() && terms.is_immobile(&[muscle.from, muscle.to]) {
+    if input(muscle, source, terms).is_none() && terms.is_immobile(&[muscle.from, muscle.to]) {
         terms.without_each(
             [INERTIA, SECTION, ELASTICITY, ELECTROELASTICITY, VISCOSITY],
             "no lumped muscle that moves",
@@ -59,7 +51,30 @@ fn lumped(muscle: &Muscle, source: usize, span: usize, terms: &mut Terms<'_>) {
         return;
     }
     inertia(muscle, source, span, terms);
-    let constants = constants(muscle, source, terms);
+    material(muscle, source, span, terms);
+}
+
+/// Terms of the forces of a lumped muscle along its span but for those of charges.
+pub(in crate::model) fn forces(of: &Construction<'_>, index: usize, terms: &mut Terms<'_>) {
+    let (muscle, span) = (&of.system.muscles[index], of.spans[index]);
+    material(muscle, index, span, terms);
+    relaxation(muscle, index, span, of.internals, terms);
+}
+
+/// The scalar of the voltage between its electrodes: behind a resistor a source drives a charge.
+fn input(muscle: &Muscle, source: usize, terms: &Terms<'_>) -> Option<usize> {
+    let is_direct = !muscle.is_behind_resistor() || !terms.is_of_motion();
+    terms.input(source).filter(|_| is_direct)
+}
+
+/// Elasticity, with the forces of a voltage, and viscosity.
+fn material(muscle: &Muscle, source: usize, span: usize, terms: &mut Terms<'_>) {
+    let input = input(muscle, source, terms);
+    let muscle = match terms.is_of_motion() {
+        true => Cow::Borrowed(muscle),
+        false => muscle.at_rest(),
+    };
+    let constants = constants(&muscle, source, terms);
     match muscle.material.law {
         None => {
             let named = [ELASTICITY, ELECTROELASTICITY];
@@ -277,7 +292,8 @@ fn unrelaxed(muscle: &Muscle, index: usize, span: usize, terms: &mut Terms<'_>) 
     }
 }
 
-/// Maxwell branches: a spring of the elastic stretch and a damper of the viscous one, whose logarithm is an internal coordinate.
+/// Maxwell branches: a spring of the elastic stretch and a damper of the viscous one, whose logarithm is an internal coordinate; springs
+/// alone where they have not relaxed.
 fn relaxation(
     muscle: &Muscle,
     index: usize,
@@ -285,6 +301,9 @@ fn relaxation(
     internals: &Internals,
     terms: &mut Terms<'_>,
 ) {
+    if terms.is_instantaneous() {
+        return unrelaxed(muscle, index, span, terms);
+    }
     let why = "Maxwell branches of";
     for (branch, of) in muscle.material.maxwell.list().iter().enumerate() {
         let kind = InternalKind::Branch {

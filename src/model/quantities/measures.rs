@@ -6,7 +6,7 @@ use crate::energy::{
     ProjectionStep, SquaredDistance, law,
 };
 use crate::functional::{
-    Element, ElementField, Group, Kernel, LawElement, Measure, Stencil, Sum, Term, VectorArg,
+    Curved, Element, ElementField, Group, Kernel, LawElement, Measure, Stencil, Term, VectorArg,
 };
 use crate::kinematics::{MaterialVector, Vectors};
 use crate::math::{Jet, Number, Vector};
@@ -17,7 +17,7 @@ use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::construction::Construction;
 use crate::model::layout::variables::Role;
 use crate::model::quantities::quantity::Quantity;
-use crate::model::quantities::what::{At, FieldPlace, Of, Pulling, Region, What};
+use crate::model::quantities::what::{At, FieldPlace, Of, Region, What};
 use crate::model::system::joints::JointCoordinate;
 use crate::model::system::{Amount, Attachment, Marker};
 use crate::model::terms::Present;
@@ -72,13 +72,15 @@ impl Measures {
                 terms,
                 is_glued,
                 quantity,
-                shape: match analysis.curved.contains(&index) {
-                    true => Shape::Curved,
-                    false => Shape::Linear,
-                },
                 vectors: &mut *vectors,
             };
-            let measure = reading.measure();
+            let is_curved = analysis.curved.contains(&index);
+            let measure = reading.measure().map(|measure| -> Box<dyn Measure> {
+                match is_curved {
+                    true => Box::new(Curved::new(measure)),
+                    false => measure,
+                }
+            });
             out.places.push(measure.is_some().then_some(list.len()));
             list.extend(measure);
         }
@@ -96,38 +98,12 @@ pub(super) struct Reading<'k, 'v> {
     /// True if constraints glue blocks to bodies, so that terms do not tell the forces on bodies.
     pub(super) is_glued: bool,
     pub(super) quantity: &'k Quantity,
-    pub(super) shape: Shape,
     pub(super) vectors: &'v mut Vectors,
 }
 
-/// Shape of a function of a quantity: linear, or curved, so that all that the quantity reads couples.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Shape {
-    Linear,
-    Curved,
-}
-
-impl Shape {
-    /// Measure of a law times a factor.
-    pub(super) fn law<L: Law<M>, const M: usize, const NV: usize, const NS: usize>(
-        self,
-        scale: f64,
-        element: LawElement<L, M, NV, NS>,
-    ) -> Box<dyn Measure> {
-        match element.given() {
-            Some(given) => self.scaled(scale, given),
-            None => self.scaled(scale, element),
-        }
-    }
-
-    /// Measure of an element times a factor.
-    fn scaled<K: Kernel>(self, scale: f64, element: K) -> Box<dyn Measure> {
-        let measure = Group::intervals("measure", scale, vec![element]);
-        match self {
-            Self::Linear => Box::new(measure),
-            Self::Curved => Box::new(Sum::curved(vec![Box::new(measure)])),
-        }
-    }
+/// Measure of an element.
+fn alone<K: Kernel>(element: K) -> Box<dyn Measure> {
+    Box::new(Group::intervals("measure", 1.0, vec![element]))
 }
 
 /// A measure; none where nothing of the model can change the quantity.
@@ -187,8 +163,7 @@ impl<'k> Reading<'k, '_> {
             What::MeanCharge(muscle) => self.mean_charge(muscle),
             What::ElectrodeVoltage(source) => self.across(source),
             What::Energy(muscle) => self.stored_energy(muscle),
-            What::Tension(Pulling::Muscle(muscle)) => self.tension(muscle),
-            What::Tension(part) => self.pull(part),
+            What::Tension(part) => self.tension(part),
             What::Reaction { joint, of, along } => self.reaction(joint, of, along),
             What::Field(FieldPlace::Muscle(muscle)) => self.muscle_field(muscle),
             What::Field(FieldPlace::Element {
@@ -210,7 +185,10 @@ impl<'k> Reading<'k, '_> {
         &self,
         element: LawElement<L, M, NV, NS>,
     ) -> Made {
-        Some(self.shape.law(1.0, element))
+        Some(match element.given() {
+            Some(given) => alone(given),
+            None => alone(element),
+        })
     }
 
     /// Measure of a formula of vectors of an instant.
@@ -237,7 +215,7 @@ impl<'k> Reading<'k, '_> {
             vectors,
             scalars,
         };
-        Some(self.shape.scaled(1.0, element))
+        Some(alone(element))
     }
 
     /// Scalar of a free parameter; none where parameters are put in.
@@ -289,7 +267,7 @@ impl<'k> Reading<'k, '_> {
             terminals: block.terminals(element),
             at: self.quantity.at.stencil(),
         };
-        Some(self.shape.scaled(1.0, field))
+        Some(alone(field))
     }
 
     /// Squared field of a lumped muscle over the one of the unit.

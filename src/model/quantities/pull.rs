@@ -1,53 +1,97 @@
 //! Measures of the forces with which parts pull their ends together and joints act: the forces of their own terms along a displacement.
 
-use crate::energy::{ElasticConstants, GivenCharge, Law, NeoHooke, SpanTension, ViscousTension};
-use crate::functional::{
-    Displacement, Impulse, LawElement, Measure, Stencil, Sum, Term, TermKind, VectorArg,
-};
+use crate::functional::{Displacement, Impulse, Measure, Shortening, Stencil, Term, TermKind};
 use crate::math::Vector;
 use crate::model::components::body::DAMPING;
-use crate::model::components::muscle_constants::MuscleConstants;
-use crate::model::layout::internal::InternalKind;
+use crate::model::components::{circuit, muscle};
+use crate::model::constants::constant::Constant;
+use crate::model::constants::free_parameters::MovedPoints;
 use crate::model::layout::joint_sections::JointSection;
 use crate::model::layout::variables::Time;
-use crate::model::quantities::measures::{Made, Reading, Shape};
+use crate::model::quantities::measures::{Made, Reading};
 use crate::model::quantities::what::{Pulling, Reaction};
-use crate::model::system::Fidelity;
+use crate::model::system::{Attachment, Fidelity};
 use crate::model::term_order::rank;
+use crate::model::terms::loads;
 use std::sync::Arc;
 
+/// A span of a part: its vector, its ends, the constants that are the components of their places, and how often the part has it.
+struct Span {
+    vector: usize,
+    ends: [Attachment; 2],
+    places: Box<dyn Fn(usize, usize) -> Constant>,
+    times: usize,
+}
+
 impl Reading<'_, '_> {
-    /// Impulse of the forces of a spring or tendon along its span in an interval; none where nothing changes its length.
-    pub(super) fn pull(&mut self, part: Pulling) -> Made {
-        let mut terms = self.known.no_terms(self.vectors);
-        let components = &self.known.system.components;
-        let (span, factor) = match part {
-            Pulling::Muscle(_) => return None,
+    /// Mean force in the intervals with which a part pulls its ends together; none where nothing changes it.
+    pub(super) fn tension(&mut self, part: Pulling) -> Made {
+        let known = self.known;
+        let mut terms = known.no_terms(self.vectors);
+        let components = &known.system.components;
+        let span = match part {
+            Pulling::Muscle(index) => {
+                let muscle = &known.system.muscles[index];
+                if muscle.fidelity != Fidelity::Lumped {
+                    return None;
+                }
+                muscle::forces(known, index, &mut terms);
+                circuit::circuit(known, index, &mut terms);
+                loads::charge_muscle(known, index, &mut terms);
+                Span {
+                    vector: known.spans[index],
+                    ends: [muscle.from, muscle.to],
+                    places: Box::new(move |end, axis| Constant::End(index, end, axis)),
+                    times: 1,
+                }
+            }
             Pulling::Spring(index) => {
                 let spring = &components.springs[index];
-                let span = terms.span(&spring.from, &spring.to)?;
                 spring.add(Some(index), &mut terms);
-                (span, 1.0)
+                Span {
+                    vector: terms.span(&spring.from, &spring.to)?,
+                    ends: [spring.from, spring.to],
+                    places: Box::new(move |end, axis| Constant::SpringEnd(index, end, axis)),
+                    times: 1,
+                }
             }
             Pulling::Tendon(index) => {
                 let tendon = &components.tendons[index];
-                let pairs = tendon.through.windows(2);
-                let spans: Vec<usize> = pairs
-                    .filter_map(|pair| terms.span(&pair[0], &pair[1]))
-                    .collect();
                 tendon.add(Some(index), &mut terms);
+                let pairs = tendon.through.windows(2);
+                let spans: Vec<_> = pairs.map(|pair| terms.span(&pair[0], &pair[1])).collect();
                 // One tension along all of it.
-                let span = *spans.first()?;
-                let times = spans.iter().filter(|other| **other == span).count();
-                (span, 1.0 / times as f64)
+                let first = spans.iter().position(Option::is_some)?;
+                let place = move |end: usize, axis| Constant::TendonPoint(index, first + end, axis);
+                Span {
+                    vector: spans[first]?,
+                    ends: [tendon.through[first], tendon.through[first + 1]],
+                    places: Box::new(place),
+                    times: spans.iter().filter(|span| **span == spans[first]).count(),
+                }
             }
         };
+        let mut read = terms.sought().read();
+        let moved = MovedPoints {
+            parts: [-1.0, 1.0],
+            bodies: span.ends.each_ref().map(|end| terms.carrier(end)),
+            places: Some(&*span.places),
+        };
+        read.moves(0, moved, |vector| terms.vector(vector));
+        let (parameters, moves) = read.with_moves();
         let (terms, ..) = terms.finish(rank);
         let pulling = terms.iter().filter(|term| term.kind() != TermKind::Kinetic);
         let pulling: Vec<_> = pulling.collect();
-        let displacement = Displacement::Shortening { span, factor };
+        let displacement = Displacement::Shortening(Shortening {
+            span: span.vector,
+            factor: 1.0 / (span.times as f64 * self.quantity.unit),
+            parameters,
+            moves,
+        });
         let measure = self.impulse(&pulling, displacement, 0);
-        (!pulling.is_empty()).then_some(measure)
+        let mut vectors = measure.vectors().into_iter();
+        let is_changed = !measure.scalars().is_empty() || vectors.any(|v| self.vectors.moves(v));
+        is_changed.then_some(measure)
     }
 
     fn impulse(
@@ -85,102 +129,5 @@ impl Reading<'_, '_> {
         let terms = self.terms.iter().filter(|term| term.name() != DAMPING);
         let terms: Vec<_> = terms.collect();
         Some(self.impulse(&terms, displacement, side))
-    }
-}
-
-/// The parts of a tension in a unit in N.
-struct Parts {
-    unit: f64,
-    list: Vec<Box<dyn Measure>>,
-}
-
-impl Parts {
-    fn add<L: Law<M>, const M: usize, const NV: usize, const NS: usize>(
-        &mut self,
-        element: LawElement<L, M, NV, NS>,
-    ) {
-        self.list.push(Shape::Linear.law(1.0 / self.unit, element));
-    }
-
-    /// Adds the force of elasticity, with that of a voltage, by a law of elasticity.
-    fn add_cell<L: ElasticConstants>(
-        &mut self,
-        of: &MuscleConstants<'_>,
-        law: L,
-        span: VectorArg,
-        voltage: Option<usize>,
-    ) {
-        match (of.muscle().material.electric, voltage) {
-            (Some(electric), Some(voltage)) => {
-                let force = |of: &mut MuscleConstants<'_>| SpanTension(of.driven(electric, law));
-                self.add::<_, 4, 1, 1>(of.with(force, [span], [voltage]));
-            }
-            _ => {
-                let force = |of: &mut MuscleConstants<'_>| SpanTension(of.elastic(law));
-                self.add::<_, 3, 1, 0>(of.with(force, [span], []));
-            }
-        }
-    }
-}
-
-impl Reading<'_, '_> {
-    /// Tension of a lumped muscle that moves or has a voltage, in the middle of the intervals.
-    pub(super) fn tension(&mut self, index: usize) -> Made {
-        let known = self.known;
-        let muscle = &known.presolved.system.muscles[index];
-        let charge = known.internals.vector(InternalKind::Charge(index));
-        let given = known.system.charge_of(index);
-        let given = given.and_then(|source| known.variables.input(source));
-        let voltage = known.variables.input(index).filter(|_| charge.is_none());
-        let is_changed = charge.is_some() || given.is_some() || voltage.is_some();
-        if muscle.fidelity != Fidelity::Lumped || !(is_changed || known.presolved.moves(muscle)) {
-            return None;
-        }
-        let of = self.muscle(index);
-        let span = self.span(index);
-        let [middle, rate] = [Stencil::Mid, Stencil::Rate].map(|stencil| stencil.of(span));
-        let mut parts = Parts {
-            unit: self.quantity.unit,
-            list: Vec::new(),
-        };
-        match muscle.material.law {
-            None => parts.add_cell(&of, NeoHooke, middle, voltage),
-            Some(law) => {
-                let mut of = of.clone();
-                let law = of.law(law);
-                parts.add_cell(&of, law, middle, voltage);
-            }
-        }
-        let mut electric = of.clone();
-        if let Some((charge, energy)) = charge.zip(electric.flowing_charge()) {
-            let energy = SpanTension(energy);
-            let vectors = [middle, Stencil::Mid.of(self.vectors.index(charge))];
-            parts.add::<_, 6, 2, 0>(electric.element(energy, vectors, []));
-        }
-        let mut electric = of.clone();
-        if let Some((charge, capacitance)) = given.zip(electric.capacitance()) {
-            let energy = SpanTension(GivenCharge { capacitance });
-            parts.add::<_, 4, 1, 1>(electric.element(energy, [middle], [charge]));
-        }
-        for (branch, constants) in muscle.material.maxwell.list().iter().enumerate() {
-            let kind = InternalKind::Branch {
-                muscle: index,
-                branch,
-            };
-            if let Some(viscous) = known.internals.vector(kind) {
-                let vectors = [middle, Stencil::Mid.of(self.vectors.index(viscous))];
-                let force =
-                    |of: &mut MuscleConstants<'_>| SpanTension(of.branch_spring(branch, constants));
-                parts.add::<_, 6, 2, 0>(of.with(force, vectors, []));
-            }
-        }
-        if let Some(viscosity) = muscle.material.viscosity {
-            let force = |of: &mut MuscleConstants<'_>| ViscousTension(of.viscous(viscosity));
-            parts.add::<_, 6, 2, 0>(of.with(force, [middle, rate], []));
-        }
-        Some(match self.shape {
-            Shape::Linear => Box::new(Sum::linear(parts.list)),
-            Shape::Curved => Box::new(Sum::curved(parts.list)),
-        })
     }
 }

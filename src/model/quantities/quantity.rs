@@ -85,13 +85,9 @@ impl Quantity {
         Self::of(What::Place { marker, axis })
     }
 
-    /// Force in N with which a part pulls its ends together.
+    /// Mean force in N in the intervals with which a part pulls its ends together.
     pub fn tension(part: Pulling) -> Self {
-        let what = What::Tension(part);
-        match part {
-            Pulling::Muscle(_) => Self::of(what),
-            Pulling::Spring(_) | Pulling::Tendon(_) => Self::step(what, 1.0),
-        }
+        Self::of(What::Tension(part))
     }
 
     /// Current of the source of a muscle behind a resistor in mA.
@@ -145,8 +141,7 @@ impl Quantity {
             (What::Speed(_), _) => (value.sqrt() * self.unit, "m/s"),
             (What::Current(_), _) => (1e3 * value * self.unit, "mA"),
             (What::Power(_), _) => (size, "W"),
-            (What::Tension(_), Of::Value) => (size, "N"),
-            (What::Tension(_), _) if self.h.is_some() => (per_time, "N"),
+            (What::Tension(_), _) => (size, "N"),
             (What::Voltage(_), _) => (per_time, "kV/s"),
             (What::MeanCharge(_), Of::Jump) => {
                 (1e3 * value * self.unit / self.h.unwrap_or(1.0), "mA")

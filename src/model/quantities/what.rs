@@ -17,7 +17,7 @@ pub enum What {
     },
     /// Stretch Λ of a muscle; its square in rows.
     Stretch(usize),
-    /// Force in N with which a part pulls its ends together; of springs and tendons its impulse in N ms in an interval.
+    /// Mean force in N in an interval with which a part pulls its ends together.
     Tension(Pulling),
     /// True field e in V/mm under the voltages of an interval; its square in rows.
     Field(FieldPlace),
@@ -322,7 +322,6 @@ impl What {
     pub fn unit(&self, of: Of, system: &System) -> &'static str {
         match self {
             Self::Joint { joint, .. } => joint_unit(system, *joint),
-            Self::Tension(_) if of == Of::Step => "N ms",
             Self::MeanCharge(_) if of == Of::Value => "mC",
             _ => self.row().2,
         }

@@ -9,7 +9,7 @@ use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::construction::Construction;
 use crate::model::layout::solid_block::SolidBlock;
 use crate::model::presolve::presolved::Presolved;
-use crate::model::system::{Attachment, Muscle};
+use crate::model::system::Attachment;
 use crate::model::terms::{Terms, mid};
 
 /// Term of the loads whose forces have a potential.
@@ -66,11 +66,28 @@ pub(crate) fn build(of: &Construction<'_>, terms: &mut Terms<'_>) {
                 on.pull(coordinate, Vector::x(), Read::nothing());
             }
             LoadPlace::Muscle(muscle) => {
-                on.charge_muscle(&system.muscles[*muscle], *muscle, of.spans[*muscle]);
+                charge_muscle(of, *muscle, on.terms);
             }
             LoadPlace::Block { block, load } => on.block(&of.blocks.list[*block], load),
         }
     }
+}
+
+/// Adds the energy of the charge that a load gives the electrodes of a muscle.
+pub(in crate::model) fn charge_muscle(
+    of: &Construction<'_>,
+    muscle: usize,
+    terms: &mut Terms<'_>,
+) -> Option<()> {
+    let mut loads = of.system.loads();
+    let (source, load) = loads.find(|(_, load)| load.on == LoadPlace::Muscle(muscle))?;
+    let charge = terms.input(source)?;
+    let mut constants = constants(&of.system.muscles[muscle], muscle, terms);
+    let capacitance = constants.capacitance()?;
+    let (span, law) = (of.spans[muscle], GivenCharge { capacitance });
+    let element = constants.element(law, [mid(span)], [charge]);
+    terms.add_law(MUSCLE_CHARGES, "the charge of", &load.name, element);
+    Some(())
 }
 
 /// A load whose terms are added.
@@ -111,16 +128,6 @@ impl Loaded<'_, '_> {
         let why = "the force of";
         self.terms
             .add_law::<_, 13, 4, 1>(FOLLOWING, why, self.name, element);
-    }
-
-    /// A charge on the electrodes of a muscle.
-    fn charge_muscle(&mut self, muscle: &Muscle, index: usize, span: usize) {
-        let mut constants = constants(muscle, index, self.terms);
-        if let Some(capacitance) = constants.capacitance() {
-            let element = constants.element(GivenCharge { capacitance }, [mid(span)], [self.size]);
-            self.terms
-                .add_law(MUSCLE_CHARGES, "the charge of", self.name, element);
-        }
     }
 
     /// A load of a block.

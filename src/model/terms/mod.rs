@@ -13,7 +13,7 @@ use crate::energy::{Coefficient, Gravity, Law};
 use crate::functional::{
     FreeConstant, Group, Inertia, Kernel, LawElement, Mass, ScaledElement, Stencil, Term, VectorArg,
 };
-use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
+use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::{Read, Sought};
@@ -227,8 +227,7 @@ impl<'a> Terms<'a> {
 
     /// Returns true if a vector of the list moves with a body, a node or a coordinate.
     pub fn moves(&self, vector: usize) -> bool {
-        let mut parts = self.vectors.list()[vector].terms.iter();
-        parts.any(|part| part.carrier != Carrier::Ground)
+        self.vectors.moves(vector)
     }
 
     /// Returns true if a scalar of the intervals has an equation of its own.

@@ -1,38 +1,36 @@
-//! Sums of quantities, of which functions are taken. A curved function couples all that the parts of a sum read.
+//! Curved functions of quantities, which couple all that the quantity reads: `∇²c(m) = c′ ∇²m + c″ ∇m ∇mᵀ`.
 
 use crate::functional::{Couplings, Horizon, Measure, Outer, Sample, SumDerivatives};
 use crate::math::Vector;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// A sum of quantities of one site.
+/// A quantity of which curved functions are taken.
 #[derive(Debug)]
-pub struct Sum {
-    parts: Vec<Box<dyn Measure>>,
-    /// Number of slots of each part.
-    slots: Vec<usize>,
-    /// For curved functions of the sum: `∇²c(m) = c′ ∇²m + c″ ∇m ∇mᵀ`.
-    square: Option<Square>,
+pub struct Curved {
+    of: Box<dyn Measure>,
+    square: Square,
 }
 
-/// The square ∇m ∇mᵀ of the gradient of a sum.
+/// The square ∇m ∇mᵀ of a gradient.
 #[derive(Debug)]
-struct Square {
-    /// Vectors and scalars that the sum reads, each once.
+pub(super) struct Square {
+    /// Vectors and scalars by which the gradient is taken, each once.
     vectors: Vec<usize>,
     scalars: Vec<usize>,
     gradient: Mutex<Gradient>,
 }
 
-/// Storage of the gradient of a sum.
+/// Storage of a gradient.
 #[derive(Debug)]
-struct Gradient {
-    forces: [Vec<Vector>; 2],
-    rows: Vec<f64>,
+pub(super) struct Gradient {
+    pub(super) forces: [Vec<Vector>; 2],
+    pub(super) rows: Vec<f64>,
 }
 
 impl Square {
-    fn new(vectors: Vec<usize>, scalars: Vec<usize>) -> Self {
-        let vectors = each_once(vectors);
+    /// The square of a gradient by vectors and scalars.
+    pub(super) fn new(vectors: Vec<usize>, scalars: Vec<usize>) -> Self {
+        let (vectors, scalars) = (each_once(vectors), each_once(scalars));
         let count = |list: &[usize]| list.last().map_or(0, |last| last + 1);
         let zeros = || vec![Vector::zeros(); count(&vectors)];
         Self {
@@ -45,13 +43,32 @@ impl Square {
         }
     }
 
+    /// Number of the slots of its couplings.
+    pub(super) fn slots(&self) -> usize {
+        let (vectors, scalars) = (self.vectors.len(), self.scalars.len());
+        vectors * (vectors + scalars) + self.pairs_of_scalars().count()
+    }
+
+    /// The gradient that is added to zero.
+    pub(super) fn gradient(&self, add: impl FnOnce(&mut Gradient)) -> MutexGuard<'_, Gradient> {
+        let gradient = self.gradient.lock();
+        let mut g = gradient.unwrap_or_else(PoisonError::into_inner);
+        g.forces
+            .iter_mut()
+            .for_each(|side| side.fill(Vector::zeros()));
+        g.rows.fill(0.0);
+        add(&mut g);
+        g
+    }
+
     /// Pairs of its scalars, each once, the later one first.
     fn pairs_of_scalars(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         let scalars = self.scalars.iter().enumerate();
         scalars.flat_map(|(i, &s)| self.scalars[..=i].iter().map(move |&t| (s, t)))
     }
 
-    fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
+    /// Registers what it couples, and lists the slots.
+    pub(super) fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
         for &a in &self.vectors {
             let with_vectors = self.vectors.iter();
             slots.extend(with_vectors.map(|&b| couplings.add_full(a, b) as u32));
@@ -63,7 +80,7 @@ impl Square {
     }
 
     /// Adds the curvature times the square.
-    fn add(
+    pub(super) fn add(
         &self,
         curvature: f64,
         g: &Gradient,
@@ -110,125 +127,82 @@ impl Square {
     }
 }
 
-impl Sum {
-    /// The sum of its parts, of which linear functions are taken.
-    pub fn linear(parts: Vec<Box<dyn Measure>>) -> Self {
-        let slots = parts.iter().map(|part| {
-            let mut slots = Vec::new();
-            part.couple(&mut Couplings::default(), &mut slots);
-            slots.len()
-        });
+impl Curved {
+    /// A quantity of which curved functions are taken.
+    pub fn new(of: Box<dyn Measure>) -> Self {
         Self {
-            slots: slots.collect(),
-            parts,
-            square: None,
+            square: Square::new(of.vectors(), of.scalars()),
+            of,
         }
-    }
-
-    /// The sum of its parts, of which curved functions are taken.
-    pub fn curved(parts: Vec<Box<dyn Measure>>) -> Self {
-        let sum = Self::linear(parts);
-        let square = Square::new(sum.vectors(), sum.scalars());
-        Self {
-            square: Some(square),
-            ..sum
-        }
-    }
-
-    /// Numbers of all parts, in their order.
-    fn all(&self, of: impl Fn(&dyn Measure) -> Vec<usize>) -> Vec<usize> {
-        self.parts
-            .iter()
-            .flat_map(|part| of(part.as_ref()))
-            .collect()
     }
 }
 
-fn each_once(mut list: Vec<usize>) -> Vec<usize> {
+/// A list in order, each number once.
+pub(super) fn each_once(mut list: Vec<usize>) -> Vec<usize> {
     list.sort_unstable();
     list.dedup();
     list
 }
 
-impl Measure for Sum {
+impl Measure for Curved {
     fn couple(&self, couplings: &mut Couplings, slots: &mut Vec<u32>) {
-        self.parts
-            .iter()
-            .for_each(|part| part.couple(couplings, slots));
-        self.square
-            .iter()
-            .for_each(|square| square.couple(couplings, slots));
+        self.of.couple(couplings, slots);
+        self.square.couple(couplings, slots);
     }
 
     fn vectors(&self) -> Vec<usize> {
-        match &self.square {
-            None => self.all(|part| part.vectors()),
-            Some(square) => square.vectors.clone(),
-        }
+        self.square.vectors.clone()
     }
 
     fn scalars(&self) -> Vec<usize> {
-        each_once(self.all(|part| part.scalars()))
+        self.square.scalars.clone()
     }
 
     fn not_by_squares(&self) -> Vec<usize> {
-        match &self.square {
-            None => each_once(self.all(|part| part.not_by_squares())),
-            Some(_) => self.scalars(),
-        }
+        self.scalars()
     }
 
     fn reads(&self, side: usize) -> bool {
-        self.parts.iter().any(|part| part.reads(side))
+        self.of.reads(side)
     }
 
     fn reads_rates(&self) -> bool {
-        self.parts.iter().any(|part| part.reads_rates())
+        self.of.reads_rates()
     }
 
     fn value(&self, sample: &Sample<'_>) -> f64 {
-        self.parts.iter().map(|part| part.value(sample)).sum()
+        self.of.value(sample)
     }
 
     fn by_duration(&self, sample: &Sample<'_>) -> f64 {
-        self.parts.iter().map(|part| part.by_duration(sample)).sum()
+        self.of.by_duration(sample)
     }
 
     fn gradient(&self, sample: &Sample<'_>, forces: &mut [Vec<Vector>; 2], rows: &mut [f64]) {
-        for part in &self.parts {
-            part.gradient(sample, forces, rows);
-        }
+        self.of.gradient(sample, forces, rows);
     }
 
     fn add_function(
         &self,
         outer: Outer,
         sample: &Sample<'_>,
-        mut slots: &[u32],
+        slots: &[u32],
         out: &mut SumDerivatives,
     ) {
         let Outer { slope, curvature } = outer;
-        debug_assert!(curvature == 0.0 || self.square.is_some(), "parts couple");
-        for (part, &count) in self.parts.iter().zip(&self.slots) {
-            let own;
-            (own, slots) = slots.split_at(count);
-            part.add_function(Outer::linear(slope), sample, own, out);
-        }
-        let Some(square) = self.square.as_ref().filter(|_| curvature != 0.0) else {
+        let (own, of_square) = slots.split_at(slots.len() - self.square.slots());
+        self.of.add_function(Outer::linear(slope), sample, own, out);
+        if curvature == 0.0 {
             return;
-        };
-        let gradient = square.gradient.lock();
-        let mut g = gradient.unwrap_or_else(PoisonError::into_inner);
-        let Gradient { forces, rows } = &mut *g;
-        forces
-            .iter_mut()
-            .for_each(|side| side.fill(Vector::zeros()));
-        rows.fill(0.0);
-        self.gradient(sample, forces, rows);
-        square.add(curvature, &g, sample, slots, out);
+        }
+        let g = self
+            .square
+            .gradient(|g| self.of.gradient(sample, &mut g.forces, &mut g.rows));
+        self.square.add(curvature, &g, sample, of_square, out);
         if sample.horizon == Horizon::Free && self.reads_rates() {
             let by_duration = self.by_duration(sample);
-            square.add_horizon(curvature * by_duration, by_duration, &g, out);
+            self.square
+                .add_horizon(curvature * by_duration, by_duration, &g, out);
         }
     }
 }
