@@ -1,8 +1,7 @@
 //! Terms of rigid bodies, and the dampers, springs and stops of their joints.
 
 use crate::energy::{
-    AngularDamper, Coefficient, CoordinateDamper, CoordinateSpring, KineticEnergy, Law,
-    LinearDamper,
+    AngularDamper, Coefficient, CoordinateDamper, CoordinateSpring, Law, LinearDamper,
 };
 use crate::functional::{Element, Mass, VectorArg};
 use crate::kinematics::{MaterialVector, Pose};
@@ -13,7 +12,7 @@ use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::construction::Construction;
 use crate::model::system::joints::JointCoordinate;
 use crate::model::system::{Attachment, Body, Joint};
-use crate::model::terms::{GRAVITY, Terms, mid, rate, weight};
+use crate::model::terms::{Call, Terms, mid, rate};
 
 const INERTIA: &str = "body inertia";
 
@@ -22,7 +21,7 @@ const INERTIA: &str = "body inertia";
 pub(in crate::model) fn build(bodies: &[Body], reference: &[Pose], terms: &mut Terms<'_>) {
     for (b, body) in bodies.iter().enumerate() {
         let centre = MaterialVector::point(Some(b), &body.centre, reference);
-        terms.weigh(&centre, body.mass);
+        terms.weigh(&centre, &body.mass.into(), terms.sought().read());
         if terms.is_of_motion() {
             let centre = terms.vector(centre);
             terms.collect(
@@ -63,14 +62,14 @@ pub(in crate::model) fn build_sought(bodies: &[Body], terms: &mut Terms<'_>) {
             places: Some(&|_, axis| Constant::BodyPlace(b, axis)),
         };
         moved.moves(0, centre, |vector| terms.vector(vector));
-        let still = terms.sought().read();
-        let more = |read: &mut Read| Sought::new(b, body, read).mass;
-        if !moved.is_empty() {
-            point_mass(body, &place, still, |_| (-body.mass).into(), terms);
-            let whole = |read: &mut Read| &more(read) + &body.mass.into();
-            point_mass(body, &place, moved, whole, terms);
-        } else if !more(&mut still.clone()).is_given() {
-            point_mass(body, &place, still, more, terms);
+        let is_moved = !moved.is_empty();
+        let Sought { mass: more, .. } = Sought::new(b, body, &mut moved);
+        if is_moved {
+            let still = terms.sought().read();
+            point_mass(body, &place, (-body.mass).into(), still, terms);
+            point_mass(body, &place, &more + &body.mass.into(), moved, terms);
+        } else if !more.is_given() {
+            point_mass(body, &place, more, moved, terms);
         }
         if terms.is_of_motion() {
             turning(b, body, &place, terms);
@@ -82,24 +81,15 @@ pub(in crate::model) fn build_sought(bodies: &[Body], terms: &mut Terms<'_>) {
 fn point_mass(
     body: &Body,
     place: &Attachment,
+    mass: Coefficient,
     read: Read,
-    mass: impl Fn(&mut Read) -> Coefficient,
     terms: &mut Terms<'_>,
 ) {
     let centre = terms.vector(terms.point(place));
-    let mut of_weight = read.clone();
-    let weighed = mass(&mut of_weight);
-    if let Some(gravity) = terms.gravity(&mut of_weight) {
-        let weight = weight(&weighed, gravity);
-        let element = of_weight.element(weight, [mid(centre)], []);
-        terms.add_law(GRAVITY, "gravity of", "the scene", element);
-    }
+    terms.weigh_vector(centre, &mass, read.clone());
     if terms.is_of_motion() {
-        let mut read = read;
-        let mass = mass(&mut read);
-        let law = KineticEnergy { mass };
-        let element = read.element(law, [rate(centre)], []);
-        terms.add_law(INERTIA, "mass of", &body.name, element);
+        let call = Call(INERTIA, "mass of", &body.name);
+        terms.add_mass(call, centre, mass, read);
     }
 }
 
@@ -112,12 +102,9 @@ fn turning(b: usize, body: &Body, place: &Attachment, terms: &mut Terms<'_>) {
             continue;
         }
         let axis: Vector = body.directors.column(i).into();
-        let director = terms.direction(place, &axis);
-        let law = KineticEnergy {
-            mass: euler[i].clone(),
-        };
-        let element = read.element(law, [rate(terms.vector(director))], []);
-        terms.add_law(INERTIA, "mass of", &body.name, element);
+        let director = terms.vector(terms.direction(place, &axis));
+        let call = Call(INERTIA, "mass of", &body.name);
+        terms.add_mass(call, director, euler[i].clone(), read);
     }
 }
 

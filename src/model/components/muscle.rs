@@ -8,7 +8,7 @@ use crate::model::components::muscle_constants::MuscleConstants;
 use crate::model::construction::Construction;
 use crate::model::layout::internal::{InternalKind, Internals};
 use crate::model::system::{Fidelity, Muscle};
-use crate::model::terms::{GRAVITY, Terms, UNRELAXED, mid, rate};
+use crate::model::terms::{Call, Terms, UNRELAXED, mid, rate};
 use nalgebra::SVector;
 use std::borrow::Cow;
 
@@ -131,7 +131,7 @@ fn inertia(muscle: &Muscle, index: usize, span: usize, terms: &mut Terms<'_>) {
     let section = of_span.section();
     let is_given = of_span.are_given();
     match is_given {
-        true => terms.weigh(&middle, mass),
+        true => terms.weigh(&middle, &mass.into(), terms.sought().read()),
         false => sought_weight(muscle, index, &middle, terms),
     }
     if !terms.is_of_motion() {
@@ -148,9 +148,8 @@ fn inertia(muscle: &Muscle, index: usize, span: usize, terms: &mut Terms<'_>) {
             (constants, middle, 1.0),
             (of_span.clone(), span, 1.0 / 12.0),
         ] {
-            if let Some(mass) = constants.inertia(factor) {
-                let element = constants.element(mass, [rate(vector)], []);
-                terms.add_law(INERTIA, OF_MASS, name, element);
+            if let Some(mass) = constants.mass(factor) {
+                terms.add_mass(Call(INERTIA, OF_MASS, name), vector, mass, constants.read());
             }
         }
     }
@@ -166,10 +165,8 @@ fn inertia(muscle: &Muscle, index: usize, span: usize, terms: &mut Terms<'_>) {
 /// Adds the weight of a muscle whose mass is free, or whose ends are, where there is gravity.
 fn sought_weight(muscle: &Muscle, index: usize, middle: &MaterialVector, terms: &mut Terms<'_>) {
     let mut constants = by_parts(muscle, index, MIDDLE, terms);
-    if let Some(weight) = constants.weight(terms) {
-        let middle = terms.vector(middle.clone());
-        let element = constants.element(weight, [mid(middle)], []);
-        terms.add_law(GRAVITY, "gravity of", "the scene", element);
+    if let Some(mass) = constants.mass(1.0) {
+        terms.weigh(middle, &mass, constants.read());
     }
 }
 

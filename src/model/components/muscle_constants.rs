@@ -2,8 +2,8 @@
 
 use crate::energy::{
     Capacitance, Coefficient, Constants, CoordinateDamper, DielectricCell, ElasticCell, ElasticLaw,
-    FlowingCharge, GivenChargeField, Gravity, KineticEnergy, MaxwellCell, NeoHooke, SectionInertia,
-    SquaredDistance, SquaredField, ViscousCell,
+    FlowingCharge, GivenChargeField, MaxwellCell, NeoHooke, SectionInertia, SquaredDistance,
+    SquaredField, ViscousCell,
 };
 use crate::functional::{LawElement, VectorArg};
 use crate::kinematics::MaterialVector;
@@ -12,7 +12,6 @@ use crate::model::constants::constant::{Constant, MaterialConstant};
 use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::system::maxwell::MaxwellBranch;
 use crate::model::system::{ElectricConstants, Fidelity, Muscle};
-use crate::model::terms::{Terms, weight};
 
 /// A muscle whose constants are read: given, or following from free parameters, which are noted.
 #[derive(Clone)]
@@ -95,6 +94,11 @@ impl<'a> MuscleConstants<'a> {
     /// Returns true if all that was read is given.
     pub(in crate::model) fn are_given(&self) -> bool {
         self.read.is_empty()
+    }
+
+    /// What was read of them.
+    pub(in crate::model) fn read(self) -> Read {
+        self.read
     }
 
     /// The element of a law that reads them.
@@ -257,21 +261,9 @@ impl<'a> MuscleConstants<'a> {
         Some((&density * &self.volume).scaled(factor))
     }
 
-    /// Kinetic energy of a part of its mass, where it has a density.
-    pub(in crate::model) fn inertia(&mut self, factor: f64) -> Option<KineticEnergy<Coefficient>> {
-        let mass = self.mass(factor)?;
-        Some(KineticEnergy { mass })
-    }
-
     /// Rest volume in mm³.
     pub(in crate::model) fn volume(&self) -> Coefficient {
         self.volume.clone()
-    }
-
-    /// Weight under the gravity of terms, where the muscle has a density.
-    pub(in crate::model) fn weight(&mut self, terms: &Terms<'_>) -> Option<Gravity<Coefficient>> {
-        let mass = self.mass(1.0)?;
-        Some(weight(&mass, terms.gravity(&mut self.read)?))
     }
 
     /// Inertia of the changing cross-section, where the muscle has a density.

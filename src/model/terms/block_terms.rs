@@ -2,7 +2,7 @@
 
 use crate::coordinates::Configuration;
 use crate::element::{ElementLaw, MaxwellSpring, Viscosity, ViscousStrains};
-use crate::energy::{KineticCoupling, KineticEnergy, MaxwellDamper, NeoHooke};
+use crate::energy::{KineticCoupling, MaxwellDamper, NeoHooke};
 use crate::functional::{Element, FiniteElement, Mass, MaxwellElement, POINTS, ViscousElement};
 use crate::kinematics::MaterialVector;
 use crate::math::Matrix;
@@ -13,7 +13,7 @@ use crate::model::layout::solids::Solids;
 use crate::model::model::Model;
 use crate::model::system::maxwell::{MaxwellBranch, Response};
 use crate::model::terms::parametric_elements::ElementOf;
-use crate::model::terms::{Call, GRAVITY, Terms, UNRELAXED, mid, rate, weight};
+use crate::model::terms::{Call, Terms, UNRELAXED, mid, rate};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -131,7 +131,7 @@ impl Solids {
             density.filter(|_| !read.is_sought(of(block, e)))
         };
         for (vector, mass) in self.weights(&given) {
-            terms.weigh_vector(vector, mass);
+            terms.weigh_vector(vector, &mass.into(), read.read());
         }
         if self.moving().next().is_none() {
             return;
@@ -171,12 +171,7 @@ impl Solids {
         let mut read = terms.sought().read();
         let density = read.constant(constant, 0.0);
         for (vector, mass) in self.weights(one) {
-            let mut read = read.clone();
-            if let Some(gravity) = terms.gravity(&mut read) {
-                let law = weight(&density.scaled(mass), gravity);
-                let element = read.element(law, [mid(vector)], []);
-                terms.add_law(GRAVITY, "gravity of", "the scene", element);
-            }
+            terms.weigh_vector(vector, &density.scaled(mass), read.clone());
         }
         if !terms.is_of_motion() {
             return;
@@ -184,9 +179,7 @@ impl Solids {
         for ([a, b], mass) in self.masses(one) {
             let (mass, why) = (density.scaled(mass), "density of");
             if a == b {
-                let law = KineticEnergy { mass };
-                let element = read.clone().element(law, [rate(a)], []);
-                terms.add_law(INERTIA, why, name, element);
+                terms.add_mass(Call(INERTIA, why, name), a, mass, read.clone());
             } else {
                 let law = KineticCoupling { mass };
                 let element = read.clone().element(law, [rate(a), rate(b)], []);

@@ -9,7 +9,7 @@ pub(super) mod joint_constraints;
 pub(super) mod loads;
 pub(super) mod parametric_elements;
 
-use crate::energy::{Coefficient, Gravity, Law};
+use crate::energy::{Coefficient, Gravity, KineticEnergy, Law};
 use crate::functional::{
     FreeConstant, Group, Inertia, Kernel, LawElement, Mass, ScaledElement, Stencil, Term, VectorArg,
 };
@@ -275,21 +275,35 @@ impl<'a> Terms<'a> {
         Some([0, 1, 2].map(|axis| read.constant(Constant::Gravity(axis), g[axis])))
     }
 
-    /// Adds the weight of a mass in g at a point, where there is gravity.
-    pub(super) fn weigh(&mut self, point: &MaterialVector, mass: f64) {
+    /// Adds the weight of a mass in g at a point, where there is gravity; of what the mass follows was `read`.
+    pub(super) fn weigh(&mut self, point: &MaterialVector, mass: &Coefficient, read: Read) {
         if self.gravity.is_some() {
             let vector = self.vectors.index(point.clone());
-            self.weigh_vector(vector, mass);
+            self.weigh_vector(vector, mass, read);
         }
     }
 
     /// Adds the weight of a mass in g at the point of a vector of the list, where there is gravity.
-    pub(super) fn weigh_vector(&mut self, vector: usize, mass: f64) {
-        let mut read = self.sought.read();
+    pub(super) fn weigh_vector(&mut self, vector: usize, mass: &Coefficient, mut read: Read) {
         if let Some(gravity) = self.gravity(&mut read) {
-            let element = read.element(weight(&mass.into(), gravity), [mid(vector)], []);
+            let weight = Gravity {
+                weight: gravity.map(|g| &g * mass).into(),
+            };
+            let element = read.element(weight, [mid(vector)], []);
             self.add_law(GRAVITY, "gravity of", "the scene", element);
         }
+    }
+
+    /// Adds the kinetic energy of a mass in g on a vector of the list; of what it follows was `read`.
+    pub(super) fn add_mass(
+        &mut self,
+        call: Call<'_>,
+        vector: usize,
+        mass: Coefficient,
+        read: Read,
+    ) {
+        let element = read.element(KineticEnergy { mass }, [rate(vector)], []);
+        self.add_law(call.0, call.1, call.2, element);
     }
 
     /// Says why a term is left out, should it be; the first reason counts.
@@ -346,13 +360,6 @@ impl<'a> Terms<'a> {
         let collected = self.collected.into_iter();
         let terms = collected.map(|c| Arc::from((c.finish)(c.term, c.list)));
         (terms.collect(), self.present, self.left_out)
-    }
-}
-
-/// Weight of a mass in g under gravity in mm/ms².
-pub(super) fn weight(mass: &Coefficient, gravity: [Coefficient; 3]) -> Gravity<Coefficient> {
-    Gravity {
-        weight: gravity.map(|g| &g * mass).into(),
     }
 }
 
