@@ -6,9 +6,8 @@
 //! of the diagonal one, of displacements and of potentials.
 
 use nalgebra::DVector;
-use proboscis::coordinates::Interval;
 use proboscis::dynamics::{MultigridUse, Start, stable_equilibrium_by};
-use proboscis::functional::Order;
+use proboscis::functional::{Order, Sample};
 use proboscis::model::Model;
 use proboscis::sparse::multigrid::{Multigrid, NodeMesh};
 use shared::block;
@@ -63,7 +62,7 @@ impl Coupled {
             stable_equilibrium_by(model, &start.z, &[VOLTAGE], MultigridUse::Always).unwrap();
         let (action, layout) = (&model.action, model.action.layout());
         let mut ends = [action.map.placed(&rest.z), action.map.placed(&rest.z)];
-        let interval = Interval::given(&rest.scalars, 1.0);
+        let interval = Sample::of_interval(&rest.scalars, 1.0);
         let mut scratch = action.scratch(Order::Hessian);
         let mut values = vec![0.0; layout.values(1)];
         let [a, b] = &mut ends;

@@ -25,5 +25,5 @@ pub use configuration::Configuration;
 pub use map::{CoordinateMap, Dependence, NodePlace};
 pub use pattern::{BlockPattern, StepPattern};
 pub use pull_back::Destination;
-pub use reduced::{Interval, Reduced, Scratch};
+pub use reduced::{Reduced, Scratch};
 pub use tree::{CHART, LANES, Link, LinkKind, Tree};

@@ -72,10 +72,10 @@ impl Reduced {
         &self,
         order: Order,
         [a, b]: [&mut Configuration; 2],
-        interval: &Interval<'_>,
+        interval: &Sample<'_>,
         scratch: &mut Scratch,
     ) {
-        let sample = interval.sample([&*a, &*b]);
+        let sample = interval.between([&*a, &*b]);
         self.intervals
             .evaluate(order, &sample, &mut scratch.interval);
         let out = &scratch.interval;
@@ -91,7 +91,7 @@ impl Reduced {
     pub fn evaluate_at_nodes(
         &self,
         ends: [&mut Configuration; 2],
-        interval: &Interval<'_>,
+        interval: &Sample<'_>,
         scratch: &mut Scratch,
         nodes: &mut NodeBlocks,
     ) {
@@ -104,11 +104,11 @@ impl Reduced {
     pub fn evaluate_at_rest(
         &self,
         [a, b]: [&mut Configuration; 2],
-        interval: &Interval<'_>,
+        interval: &Sample<'_>,
         scratch: &mut Scratch,
         nodes: Option<&mut NodeBlocks>,
     ) {
-        let sample = interval.sample([&*a, &*b]);
+        let sample = interval.between([&*a, &*b]);
         let out = &mut scratch.interval;
         match nodes {
             Some(nodes) => {
@@ -128,7 +128,7 @@ impl Reduced {
         &self,
         order: Order,
         ends: [&Configuration; 2],
-        interval: &Interval<'_>,
+        interval: &Sample<'_>,
         k: usize,
         scratch: &mut Scratch,
         values: &mut [f64],
@@ -354,47 +354,13 @@ impl Laid {
     }
 }
 
-/// Input of an evaluation on one interval, in addition to its two instants.
-#[derive(Clone, Copy, Debug)]
-pub struct Interval<'a> {
-    /// Scalars, such as voltages and potentials.
-    pub scalars: &'a [f64],
-    /// Their rates along the direction; read at order `Third` only.
-    pub along: &'a [f64],
-    /// Length in ms.
-    pub h: f64,
-    /// Interval length as a given number or an argument.
-    pub horizon: Horizon,
-    /// Blocks that are asked for.
-    pub sides: BlockMask,
-    /// Functions of the measures of the site.
-    pub outer: &'a [Outer],
-}
-
-impl<'a> Interval<'a> {
-    /// A given interval, all blocks.
-    pub fn given(scalars: &'a [f64], h: f64) -> Self {
-        Self {
-            scalars,
-            along: &[],
-            h,
-            horizon: Horizon::Given,
-            sides: BlockMask::ALL,
-            outer: &[],
-        }
-    }
-
-    /// Returns the input of terms on this interval.
-    pub fn sample(&self, [a, b]: [&'a Configuration; 2]) -> Sample<'a> {
+impl Sample<'_> {
+    /// The same between two instants.
+    pub fn between<'c>(&'c self, [a, b]: [&'c Configuration; 2]) -> Sample<'c> {
         Sample {
             vectors: [&a.x, &b.x],
             along: [&a.w, &b.w],
-            scalars: self.scalars,
-            scalars_along: self.along,
-            h: self.h,
-            horizon: self.horizon,
-            sides: self.sides,
-            outer: self.outer,
+            ..*self
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Energies of one interval, term by term.
 
-use crate::coordinates::{Configuration, Interval};
+use crate::coordinates::Configuration;
 use crate::functional::{Sample, Term, TermKind};
 use crate::model::Model;
 
@@ -50,8 +50,8 @@ pub fn energies(
     scalars: &[f64],
     h: f64,
 ) -> Energies {
-    let interval = Interval::given(scalars, h);
-    let sample = interval.sample([a, b]);
+    let interval = Sample::of_interval(scalars, h);
+    let sample = interval.between([a, b]);
     let mut energies = Energies::default();
     for term in &model.action.intervals.terms {
         energies.work.add(1.0, term.as_ref(), &sample);

@@ -8,13 +8,13 @@
 //!
 //! with the potentials φ of the interval, which have no inertia, by Gauss's law.
 
-use crate::coordinates::{Configuration as Place, Interval, Scratch};
+use crate::coordinates::{Configuration as Place, Scratch};
 use crate::dynamics::newton_matrix::NewtonMatrix;
 use crate::dynamics::resolution::{Balance, typical_energy};
 use crate::dynamics::solving::{Drive, Newton, Solving};
 use crate::dynamics::stepper::{Equations, Now, Steps};
 use crate::dynamics::tangent::{EntryList, Tangent};
-use crate::functional::{BlockMask, NodeBlocks, Order};
+use crate::functional::{BlockMask, NodeBlocks, Order, Sample};
 use crate::math::Vector;
 use crate::model::Model;
 use crate::sparse::{Backend, DENSE};
@@ -177,9 +177,9 @@ impl Equations for Midpoint<'_> {
         }
         residual[..n].copy_from_slice(&self.momentum);
         residual[n..].fill(0.0);
-        let interval = Interval {
+        let interval = Sample {
             sides: BlockMask::FORWARD,
-            ..Interval::given(scalars, h)
+            ..Sample::of_interval(scalars, h)
         };
         match nodes {
             Some(nodes) => action.evaluate_at_nodes([here, next], &interval, scratch, nodes),
@@ -248,15 +248,15 @@ impl Equations for Midpoint<'_> {
             typical_energy,
             ..
         } = self;
-        let interval = Interval {
+        let interval = Sample {
             sides: BlockMask::FORWARD,
-            ..Interval::given(scalars, h)
+            ..Sample::of_interval(scalars, h)
         };
         let action = &model.action;
         action.evaluate_interval(Order::Gradient, [here, next], &interval, scratch);
         let ends = [&*here, &*next];
-        let parts = iter::once((1.0, interval.sample(ends), &scratch.interval.plain.forces));
-        let ends = ends.map(|at| interval.sample([at, at]));
+        let parts = iter::once((1.0, interval.between(ends), &scratch.interval.plain.forces));
+        let ends = ends.map(|at| interval.between([at, at]));
         Some(Balance::new(model, *typical_energy, 0.0, ends, parts))
     }
 

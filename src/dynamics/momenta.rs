@@ -11,7 +11,7 @@
 //! so that they meet the constraints; without constraints this is M v = p. Where coordinates have no inertia or constraints follow from
 //! others, it is solved in a basis N of the null space of G, NᵀM N w = Nᵀp with v = N w, and what has no inertia rests.
 
-use crate::coordinates::{Configuration, Destination, Interval, Scratch};
+use crate::coordinates::{Configuration, Destination, Scratch};
 use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::dynamics::trajectory::DiscreteTrajectory;
 use crate::functional::{BlockMask, Blocks, Order, Sample, SumDerivatives, TermKind};
@@ -175,9 +175,9 @@ pub fn last_momentum(model: &Model, discrete: &DiscreteTrajectory) -> Option<Vec
     let action = &model.action;
     let mut ends = [k, k + 1].map(|k| action.map.placed(&discrete.z[k]));
     let mut scratch = action.scratch(Order::Gradient);
-    let interval = Interval {
+    let interval = Sample {
         sides: BlockMask::FORWARD,
-        ..Interval::given(scalars, discrete.times[k + 1] - discrete.times[k])
+        ..Sample::of_interval(scalars, discrete.times[k + 1] - discrete.times[k])
     };
     let [here, next] = &mut ends;
     action.evaluate_interval(Order::Gradient, [here, next], &interval, &mut scratch);

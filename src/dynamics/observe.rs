@@ -9,14 +9,14 @@
 //! begins there and of p⁺ = D₂L_d + f⁺ of the one that ends there, of second order. Where no joint holds the system to the ground both
 //! are equal; otherwise the impulses of its reactions over half a step to either side lie between them, and the mean has neither.
 
-use crate::coordinates::{Configuration, Interval, Scratch};
+use crate::coordinates::{Configuration, Scratch};
 use crate::dynamics::energies::{Work, energies};
 use crate::dynamics::momenta::{Kinetic, Places, momentum_maps, moving, vector_momenta};
 use crate::dynamics::part_columns::{PartColumns, momentum, rates_at, reactions};
 use crate::dynamics::trajectory::{
     Column, DiscreteTrajectory, Observations, Reading, Side, Trajectory, sides,
 };
-use crate::functional::{Order, TermKind};
+use crate::functional::{Order, Sample, TermKind};
 use crate::math::{IsOver, Stopped, Vector, has_pool};
 use crate::model::{Model, Role, SolidBlock};
 use rayon::prelude::*;
@@ -317,7 +317,7 @@ impl<'m> Observer<'m> {
         self.model.action.evaluate_interval(
             Order::Gradient,
             [before, here],
-            &Interval::given(scalars, h),
+            &Sample::of_interval(scalars, h),
             scratch,
         );
         self.model.charges(&scratch.interval.plain.rows, h)

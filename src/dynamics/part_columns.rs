@@ -10,7 +10,7 @@
 //! beside it; what is missing is the impulse of the joint during that time, and its mean the reaction at the instant, of second order.
 //! First and last row are extrapolated linearly. Motors, springs, stops and dampers of a joint act through it and are included.
 
-use crate::coordinates::{Configuration, Interval, Scratch};
+use crate::coordinates::{Configuration, Scratch};
 use crate::dynamics::momenta::{Kinetic, last_momentum, rates};
 use crate::dynamics::trajectory::{Column, DiscreteTrajectory, Reading, Side};
 use crate::functional::{Order, Output, Sample};
@@ -186,7 +186,7 @@ pub(super) fn momentum(
     model.action.evaluate_interval(
         Order::Gradient,
         [&mut a, &mut b],
-        &Interval::given(scalars, discrete.times[1] - discrete.times[0]),
+        &Sample::of_interval(scalars, discrete.times[1] - discrete.times[0]),
         scratch,
     );
     model

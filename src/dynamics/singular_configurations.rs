@@ -15,9 +15,9 @@
 
 #![expect(non_snake_case, reason = "notation of the law")]
 
-use crate::coordinates::{Configuration, Interval};
+use crate::coordinates::Configuration;
 use crate::dynamics::trajectory::DiscreteTrajectory;
-use crate::functional::TermKind;
+use crate::functional::{Sample, TermKind};
 use crate::math::{Matrix, Vector, largest_eigenvalue_bound};
 use crate::model::system::{ElasticLaw, ElectricConstants, Fidelity, Material, Muscle};
 use crate::model::{Model, SolidBlock};
@@ -140,8 +140,8 @@ pub(super) fn is_inverted(model: &Model, at: &Configuration, scalars: &[f64]) ->
     if model.solids.is_empty() {
         return false;
     }
-    let interval = Interval::given(scalars, 1.0);
-    let sample = interval.sample([at, at]);
+    let interval = Sample::of_interval(scalars, 1.0);
+    let sample = interval.between([at, at]);
     let mut terms = model.action.intervals.terms.iter();
     terms.any(|e| e.kind() == TermKind::Potential && !e.energy(&sample).is_finite())
 }

@@ -10,8 +10,8 @@
 //! momentum: its row holds with p = 0 at all instants. A voltage V that acts by its square alone is replaced by `w = V²`, as its own
 //! derivative vanishes with it: the derivative by w is the same at all V.
 
-use crate::coordinates::{Configuration, Interval, Scratch};
-use crate::functional::Order;
+use crate::coordinates::{Configuration, Scratch};
+use crate::functional::{Order, Sample};
 use crate::math::Vector;
 use crate::model::{Coordinates, Model, Role};
 use nalgebra::{DMatrix, DVector};
@@ -239,7 +239,7 @@ impl<'m> Linearisation<'m> {
             end.forces.fill(Vector::zeros());
         }
         self.values.fill(0.0);
-        let interval = Interval::given(scalars, h);
+        let interval = Sample::of_interval(scalars, h);
         let (scratch, values) = (&mut self.scratch, &mut self.values);
         let [here, next] = &mut self.ends;
         action.evaluate_interval(Order::Hessian, [here, next], &interval, scratch);

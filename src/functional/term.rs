@@ -44,9 +44,18 @@ impl<'a> Sample<'a> {
         Self {
             vectors: [vectors, vectors],
             along: [vectors, vectors],
+            ..Self::of_interval(scalars, 1.0)
+        }
+    }
+
+    /// A given interval of h ms with its scalars, all blocks, without the vectors at its ends.
+    pub fn of_interval(scalars: &'a [f64], h: f64) -> Self {
+        Self {
+            vectors: [&[]; 2],
+            along: [&[]; 2],
             scalars,
             scalars_along: &[],
-            h: 1.0,
+            h,
             horizon: Horizon::Given,
             sides: BlockMask::ALL,
             outer: &[],

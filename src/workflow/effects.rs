@@ -4,7 +4,7 @@
 //! no list of all has to be sorted.
 
 use crate::control::problem::Control;
-use crate::coordinates::{CoordinateMap, Interval};
+use crate::coordinates::CoordinateMap;
 use crate::functional::{Coupling, Functional, Order, Sample, Term, TermKind};
 use crate::model::{Model, Time, Variable};
 use crate::workflow::reasons;
@@ -246,8 +246,8 @@ pub(crate) fn measured_times(model: &Model, spent: f64) -> Vec<f64> {
     let start = model.reference_coordinates();
     let instant = action.map.placed(&start);
     let scalars = vec![0.0; action.intervals.scalars];
-    let interval = Interval::given(&scalars, model.analysis.interval);
-    let of_interval = interval.sample([&instant, &instant]);
+    let interval = Sample::of_interval(&scalars, model.analysis.interval);
+    let of_interval = interval.between([&instant, &instant]);
     let multipliers = vec![0.0; action.instants.scalars];
     let of_instant = Sample {
         scalars: &multipliers,

@@ -6,8 +6,7 @@ use crate::common::random::Random;
 use crate::common::trunk;
 use proboscis::control::problem::Duration;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
-use proboscis::coordinates::Interval;
-use proboscis::functional::Order;
+use proboscis::functional::{Order, Sample};
 use proboscis::model::system::System;
 use proboscis::model::{Coordinates, Model, Role};
 use proboscis::nlp::{Bounds, Entries, Nlp, differences};
@@ -113,7 +112,7 @@ fn dense(system: &System, coordinates: Coordinates) -> nalgebra::DMatrix<f64> {
     let mut values = vec![0.0; layout.values(1)];
     let mut scratch = action.scratch(Order::Hessian);
     let level = Order::Hessian;
-    let interval = Interval::given(&scalars, 10.0);
+    let interval = Sample::of_interval(&scalars, 10.0);
     action.evaluate_interval(level, [&mut a, &mut b], &interval, &mut scratch);
     action.pull_back_interval(level, [&a, &b], &interval, 0, &mut scratch, &mut values);
     for (k, instant) in [&mut a, &mut b].into_iter().enumerate() {

@@ -2,10 +2,9 @@
 
 use crate::common::{bare, motion, placed, trunk};
 use nalgebra::{Matrix3, Vector3};
-use proboscis::coordinates::Interval;
 use proboscis::dynamics::{Start, energies, observations};
 use proboscis::energy::{Cable, LinearSpring};
-use proboscis::functional::{Element, Order};
+use proboscis::functional::{Element, Order, Sample};
 use proboscis::model::components::{Other, Spring, Tendon};
 use proboscis::model::system::{Attachment, Body, Joint, JointKind, Shape, System};
 use proboscis::model::{Analysis, Component, Coordinates, InitiallyMoving, Model, Terms, mid};
@@ -252,7 +251,7 @@ fn forces_of_a_path_are_those_of_its_length() {
     for instant in [&mut a, &mut b] {
         instant.forces.fill(Vector3::zeros());
     }
-    let interval = Interval::given(&[], 1.0);
+    let interval = Sample::of_interval(&[], 1.0);
     let ends = [&mut a, &mut b];
     model
         .action

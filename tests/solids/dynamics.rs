@@ -2,11 +2,10 @@
 
 use crate::common::solid::{block, material, mesh, numbers, reference, stack, system};
 use nalgebra::Vector3;
-use proboscis::coordinates::Interval;
 use proboscis::dynamics::{
     DiscreteTrajectory, Newton, Solving, Start, observations, simulate, simulate_by,
 };
-use proboscis::functional::Order;
+use proboscis::functional::{Order, Sample};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{Material, Solid, System};
 use proboscis::model::{Model, Role};
@@ -135,7 +134,7 @@ fn gauss_holds_in_every_interval_and_the_balance_closes() {
             instant.z.copy_from_slice(z);
             model.action.map.place(instant);
         }
-        let interval = Interval::given(&discrete.scalars[k], h);
+        let interval = Sample::of_interval(&discrete.scalars[k], h);
         model
             .action
             .evaluate_interval(Order::Gradient, [&mut a, &mut b], &interval, &mut scratch);

@@ -6,8 +6,7 @@ use crate::common::solid::{DRIVEN, block, electrode, held, system};
 use crate::common::systems::{GRAVITY, blocks};
 use nalgebra::Vector3;
 use proboscis::control::{BoundaryConditions, Transcription, guess};
-use proboscis::coordinates::Interval;
-use proboscis::functional::{Order, TermKind};
+use proboscis::functional::{Order, Sample, TermKind};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{Electrode, Fidelity, Material, Potential, Solid, System};
 use proboscis::model::{Coordinates, Model, Role, Time};
@@ -299,7 +298,7 @@ fn numbers(model: &Model, n: usize) -> Vec<(usize, usize, f64)> {
     let scalars: Vec<f64> = (0..model.action.intervals.scalars)
         .map(|s| 100.0 + s as f64)
         .collect();
-    let interval = Interval::given(&scalars, 2.0);
+    let interval = Sample::of_interval(&scalars, 2.0);
     let (action, layout) = (&model.action, model.action.layout());
     let mut scratch = action.scratch(Order::Hessian);
     let mut values = vec![0.0; layout.values(1)];

@@ -8,7 +8,7 @@
 
 use crate::control::transcription::cost_rows::{CostRow, EnergyRow, fill_costs, fill_energies};
 use crate::control::transcription::limit_rows::{LimitRow, Site, fill_limits};
-use crate::coordinates::{Configuration, Interval, Reduced, Scratch};
+use crate::coordinates::{Configuration, Reduced, Scratch};
 use crate::functional::{BlockMask, Horizon, Order, Outer, Sample};
 use crate::math::Vector;
 use crate::stop::TimeLimit;
@@ -161,27 +161,25 @@ impl Segment<'_> {
         } = &mut *self.workspace;
         let site = Site::Intervals;
         fill_limits(outer, self.shared.limits, site, k, self.shared.costates);
-        let plain = Interval {
-            scalars: &self.shared.scalars[of_step.clone()],
-            along: &self.shared.along[of_step],
-            h,
+        let plain = Sample {
+            scalars_along: &self.shared.along[of_step.clone()],
             horizon,
             sides,
-            outer: &[],
+            ..Sample::of_interval(&self.shared.scalars[of_step], h)
         };
         if order == Order::Third {
             let (costs, sigma) = (self.shared.costs, self.shared.sigma);
-            let sample = plain.sample([a, b]);
+            let sample = plain.between([a, b]);
             fill_costs(outer, costs, site, k, sigma, action, &sample);
         }
-        let interval = Interval { outer, ..plain };
+        let interval = Sample { outer, ..plain };
         action.evaluate_interval(order, [a, b], &interval, scratch);
         if order == Order::Gradient {
             let rows = &mut self.rows[j * stride + action.map.unknowns()..(j + 1) * stride];
             rows.copy_from_slice(&scratch.interval.plain.rows);
         }
         scratch.carry(order);
-        let carried = Interval {
+        let carried = Sample {
             sides: BlockMask::CARRIED,
             ..interval
         };

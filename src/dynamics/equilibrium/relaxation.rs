@@ -3,11 +3,10 @@
 //! Implicit Euler steps with one Newton iteration each, (B/Δt − ∂f/∂q) Δq = f, as long as Δt admits: no motion grows by the matrix, and the
 //! step is short (pseudo-transient continuation). Forces need no potential: loads may follow what they act on.
 
-use crate::coordinates::Interval;
 use crate::dynamics::equilibrium::rest_state::RestState;
 use crate::dynamics::equilibrium::statics::{ITERATIONS, Statics};
 use crate::dynamics::singular_configurations::{reversed, shortest};
-use crate::functional::{Order, TermKind};
+use crate::functional::{Order, Sample, TermKind};
 use crate::math::Vector;
 use crate::stop;
 
@@ -94,8 +93,8 @@ impl Statics<'_> {
         self.scalars[variables.inputs()].copy_from_slice(voltages);
         self.scalars[variables.algebraic()].copy_from_slice(&state[m..]);
         self.place(state);
-        let interval = Interval::given(&self.scalars, 1.0);
-        let sample = interval.sample([&self.a, &self.a]);
+        let interval = Sample::of_interval(&self.scalars, 1.0);
+        let sample = interval.between([&self.a, &self.a]);
         let terms = action.intervals.terms.iter();
         let potential = terms.filter(|term| term.kind() == TermKind::Potential);
         potential.map(|term| term.energy(&sample)).sum()

@@ -9,14 +9,14 @@
 //! Loads that follow what they act on have no potential, and the tangent no symmetry: then its eigenvalues decide whether a state is
 //! stable (`growing_motions`).
 
-use crate::coordinates::{Configuration, Interval, Scratch};
+use crate::coordinates::{Configuration, Scratch};
 use crate::dynamics::equilibrium::rest_state::{Examined, RestState};
 use crate::dynamics::equilibrium::static_matrix::{Inertia, matrix, places, turned_pairs};
 use crate::dynamics::error::EquilibriumError;
 use crate::dynamics::newton_matrix::{GridTangent, Iterated, NewtonMatrix};
 use crate::dynamics::solving::MultigridUse;
 use crate::dynamics::tangent::Tangent;
-use crate::functional::Order;
+use crate::functional::{Order, Sample};
 use crate::math::Vector;
 use crate::model::{Model, OPEN, Role};
 use crate::sparse::Singular;
@@ -202,7 +202,7 @@ impl<'m> Statics<'m> {
         for instant in [&mut *a, &mut *b] {
             instant.forces.fill(Vector::zeros());
         }
-        let interval = Interval::given(scalars, self.model.multiplier_time);
+        let interval = Sample::of_interval(scalars, self.model.multiplier_time);
         let is_whole = match matrix.grids_mut() {
             Some(grids) => grids.write(|nodes| {
                 action.evaluate_at_rest([a, b], &interval, scratch, Some(nodes));
@@ -492,8 +492,8 @@ pub(super) fn weights(model: &Model) -> Vec<Vector> {
     let map = &model.action.map;
     let instant = map.placed(&vec![0.0; map.unknowns()]);
     let scalars = vec![0.0; model.action.intervals.scalars];
-    let interval = Interval::given(&scalars, model.multiplier_time);
-    let sample = interval.sample([&instant, &instant]);
+    let interval = Sample::of_interval(&scalars, model.multiplier_time);
+    let sample = interval.between([&instant, &instant]);
     let mut out = model.action.intervals.output(Order::Gradient);
     let terms = model.action.intervals.terms.iter();
     for weight in terms.filter(|term| term.is_weight()) {
