@@ -261,6 +261,7 @@ impl Control {
         Self {
             duration: Duration::Given(duration),
             intervals,
+            input_intervals: 1,
             is_refined: false,
             varied: Vec::new(),
             outcomes: Vec::new(),

@@ -97,6 +97,8 @@ impl Row {
 pub struct InputColumn {
     /// Column.
     pub column: usize,
+    /// Interval.
+    pub k: usize,
     /// Place in a list of the inputs of all intervals, given ones included.
     pub place: usize,
     /// Input of an interval.
@@ -110,7 +112,7 @@ pub struct Numbering {
     pub columns: Vec<Column>,
     /// All rows, in order; limits follow where they are added.
     pub rows: Vec<Row>,
-    /// Columns of voltages and loads.
+    /// Voltages and loads of all intervals with their columns.
     pub inputs: Vec<InputColumn>,
     column_of_instant: Vec<Option<usize>>,
     column_of_interval: Vec<Option<usize>>,
@@ -177,10 +179,16 @@ impl Numbering {
                 }
                 let at = k * of_interval + s;
                 let column = Column::Interval { k, s };
-                let number = out.column(column, is_given(column));
-                if let (Some(number), true) = (number, inputs.contains(&s)) {
+                let is_input = inputs.contains(&s);
+                let first = k - k % span.held;
+                let number = match is_input && first < k {
+                    true => out.scalar(first, s),
+                    false => out.column(column, is_given(column)),
+                };
+                if let (Some(column), true) = (number, is_input) {
                     out.inputs.push(InputColumn {
-                        column: number,
+                        column,
+                        k,
                         place: k * inputs.len() + s,
                         input: s,
                     });
@@ -228,6 +236,16 @@ impl Numbering {
         self.column_of_horizon
     }
 
+    /// All variables with their columns: those of the columns, then inputs that are held over from an interval before.
+    pub(in crate::control) fn variables(&self) -> impl Iterator<Item = (Column, usize)> {
+        let own = self.columns.iter().copied().zip(0..);
+        let inputs = self.inputs.iter().map(|input| {
+            let (k, s) = (input.k, input.input);
+            (Column::Interval { k, s }, input.column)
+        });
+        own.chain(inputs.filter(move |&(variable, column)| self.columns[column] != variable))
+    }
+
     /// Number of a column, unless its value is given.
     pub(in crate::control) fn number(&self, column: Column) -> Option<usize> {
         match column {
@@ -267,6 +285,8 @@ pub struct Span {
     pub all: usize,
     /// True if the last interval comes before the first one, of a periodic motion.
     pub is_closed: bool,
+    /// Neighbouring intervals, from the first on, in which an input is one column.
+    pub held: usize,
 }
 
 impl Span {

@@ -131,6 +131,8 @@ pub struct Control {
     pub duration: Duration,
     /// Number of intervals N ≥ 1.
     pub intervals: usize,
+    /// Neighbouring intervals over which an input has one value; 1 of a problem whose objective counts rates.
+    pub input_intervals: usize,
     /// True if this number is that of a first grid, refined until the verification of the optimum confirms an accuracy.
     pub is_refined: bool,
     /// Initial state.

@@ -47,6 +47,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
     Control {
         duration: Duration::Given(10.0 * intervals as f64),
         intervals,
+        input_intervals: 1,
         is_refined: false,
         varied: Vec::new(),
         outcomes: Vec::new(),

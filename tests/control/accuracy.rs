@@ -52,6 +52,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
     let problem = Control {
         duration: Duration::Given(TIME),
         intervals,
+        input_intervals: 1,
         is_refined: false,
         varied: Vec::new(),
         outcomes: Vec::new(),

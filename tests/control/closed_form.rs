@@ -55,6 +55,7 @@ fn optimum(
     let problem = Control {
         duration: Duration::Given(time),
         intervals,
+        input_intervals: 1,
         is_refined: false,
         varied: Vec::new(),
         outcomes: Vec::new(),

@@ -33,6 +33,7 @@ fn problem(name: &str, coordinates: Coordinates) -> Control {
     Control {
         duration,
         intervals: control["intervals"].as_u64().unwrap() as usize,
+        input_intervals: 1,
         is_refined: false,
         varied: Vec::new(),
         outcomes: Vec::new(),

@@ -78,10 +78,8 @@ impl Transcription<'_> {
             sums.zip(twin).for_each(|(sum, row)| *sum += *row);
         }
         let of_interval = |k: usize, s: usize| self.workspace.rows[k * stride + coordinates + s];
-        let columns = self.layout.unknowns.columns.iter();
-        let columns = columns.zip(&self.variable_scales);
-        for (sum, (column, scale)) in grad.iter_mut().zip(columns) {
-            let row = match *column {
+        for (column, number) in self.layout.unknowns.variables() {
+            let row = match column {
                 Column::Instant { k, i } => self.workspace.rows[k * stride + i],
                 Column::Interval { k, s } => of_interval(k, s),
                 Column::Parameter { s } => {
@@ -89,7 +87,7 @@ impl Transcription<'_> {
                 }
                 Column::Horizon => continue,
             };
-            *sum += row * scale;
+            grad[number] += row * self.variable_scales[number];
         }
     }
 

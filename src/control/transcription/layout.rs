@@ -47,6 +47,7 @@ impl Layout {
             end,
             all: end + usize::from(control.seeks_hold()),
             is_closed: control.goal == BoundaryState::Periodic,
+            held: control.input_intervals,
         };
         let map = &model.action.map;
         // A node that multipliers hold rests with what they hold it to: its balance gives their last value.

@@ -203,6 +203,7 @@ fn sites(when: When, site: Site, span: Span, reads_inputs: bool) -> Range<usize>
         end,
         all: intervals,
         is_closed,
+        ..
     } = span;
     match (when, site) {
         (When::Never, _) => 0..0,

@@ -18,7 +18,7 @@ pub struct Decoder {
     held: Option<Vec<f64>>,
     span: Span,
     h: f64,
-    columns: Vec<Column>,
+    columns: Vec<(Column, usize)>,
     scales: Vec<f64>,
     row_scales: Vec<f64>,
 }
@@ -29,9 +29,9 @@ impl Decoder {
         let (mut z, mut scalars, mut h) = (self.z.clone(), self.scalars.clone(), self.h);
         let mut held = self.held.clone();
         let (instants, intervals) = (z.len(), scalars.len());
-        for ((column, scale), x) in self.columns.iter().zip(&self.scales).zip(x) {
-            let value = scale * x;
-            match *column {
+        for &(column, number) in &self.columns {
+            let value = self.scales[number] * x[number];
+            match column {
                 Column::Instant { k, i } if k < instants => z[k][i] = value,
                 Column::Interval { k, s } if k < intervals => scalars[k][s] = value,
                 Column::Interval { s, .. } => held.iter_mut().for_each(|row| row[s] = value),
@@ -104,7 +104,7 @@ impl Transcription<'_> {
             held: (end < self.layout.span.all).then(|| scalars(end)),
             span: self.layout.span,
             h: self.workspace.h,
-            columns: self.layout.unknowns.columns.clone(),
+            columns: self.layout.unknowns.variables().collect(),
             scales: self.variable_scales.clone(),
             row_scales: self.row_scales.clone(),
         }
@@ -139,10 +139,9 @@ impl Transcription<'_> {
         }
         workspace.point.copy_from_slice(x);
         let count = self.model.action.layout().interval_scalars;
-        let columns = self.layout.unknowns.columns.iter();
-        for ((column, scale), value) in columns.zip(&self.variable_scales).zip(x) {
-            let value = scale * value;
-            match *column {
+        for (column, number) in self.layout.unknowns.variables() {
+            let value = self.variable_scales[number] * x[number];
+            match column {
                 Column::Instant { k, i } => workspace.instants[k].z[i] = value,
                 Column::Interval { k, s } => workspace.scalars[k * count + s] = value,
                 Column::Parameter { s } => {

@@ -100,6 +100,7 @@ pub(crate) fn control(
     let control = Control {
         duration,
         intervals: intervals.unwrap_or(FIRST_INTERVALS),
+        input_intervals: 1,
         is_refined: intervals.is_none(),
         varied: Vec::new(),
         outcomes: Vec::new(),
