@@ -70,15 +70,18 @@ const AT_BOUND: f64 = 1e-4;
 impl LawInput {
     /// An input with a correction, its bounds, and the input itself, all in the unit in which it acts: squares where it does by them.
     pub fn wanted(&self, given: f64, correction: f64) -> (f64, [f64; 2], f64) {
-        let [low, high] = self.bounds;
         // Of measured numbers so large that what follows is none.
         let correction = if correction.is_nan() { 0.0 } else { correction };
+        let given = self.acting(given);
+        let bounds = self.bounds.map(|bound| self.acting(bound));
+        (given + correction, bounds, given)
+    }
+
+    /// A value of the input in the unit in which it acts.
+    pub fn acting(&self, value: f64) -> f64 {
         match self.is_squared {
-            true => {
-                let square = given * given;
-                (square + correction, [low * low, high * high], square)
-            }
-            false => (given + correction, [low, high], given),
+            true => value * value,
+            false => value,
         }
     }
 

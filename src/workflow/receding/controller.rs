@@ -23,10 +23,9 @@ use crate::nlp::Nlp;
 use crate::stop;
 use crate::workflow::receding::horizon::Horizon;
 use crate::workflow::receding::iteration::{Iteration, Residual};
-use crate::workflow::receding::layout::{Between, places};
-use crate::workflow::receding::program::Program;
+use crate::workflow::receding::program::{Between, Program, Reading};
 use crate::workflow::receding::state::{Predicted, Source};
-use std::hash::Hash;
+use rustc_hash::FxHashMap;
 
 /// The barrier parameter, as a part of the weight of inputs.
 const BARRIER: f64 = 1e-7;
@@ -92,17 +91,17 @@ impl<'h> RecedingHorizon<'h> {
     pub fn new(of: &'h Horizon) -> Self {
         let program = of.program();
         let columns = program.variables().count();
-        let width = of.coordinates().len();
+        let width = of.steered.coordinates.len();
         let mut is_held = vec![false; columns];
-        let start = &program.layout.coordinates[..width];
-        start.iter().for_each(|&(i, _)| is_held[i] = true);
+        let start = program.readings[..width].iter();
+        start.for_each(|reading| is_held[reading.column] = true);
         let shift = Shift::new(&program);
         let law = of.law();
-        let model = of.model();
+        let model = &of.model;
         let [changes, rows] = [width, program.momentum.len()].map(|n| vec![(0, 0.0); n]);
         let x = vec![0.0; columns];
         let mut out = Self {
-            iteration: Iteration::new(program, &x, &is_held, BARRIER * of.weight()),
+            iteration: Iteration::new(program, &x, &is_held, BARRIER * of.of_inputs),
             shift,
             state: Predicted::new(law, of.delay()),
             interval: 0,
@@ -180,7 +179,7 @@ impl<'h> RecedingHorizon<'h> {
         self.iteration.program.momentum.fill(0.0);
         self.iteration.evaluate_rows();
         let Iteration { program, g, .. } = &mut self.iteration;
-        let rows = program.layout.momenta[0].iter();
+        let rows = program.momenta[0].iter();
         for (momentum, &(row, scale)) in program.momentum.iter_mut().zip(rows) {
             *momentum = -g[row] / scale;
         }
@@ -247,7 +246,7 @@ impl<'h> RecedingHorizon<'h> {
             if self.iteration.advance(&self.changes, &self.rows, full) {
                 self.iterate_further();
                 self.failures = 0;
-                self.read(0);
+                self.read();
                 return Source::Plan;
             }
         }
@@ -268,9 +267,9 @@ impl<'h> RecedingHorizon<'h> {
             }
             self.stay();
             let Iteration { program, .. } = &mut self.iteration;
-            let inert = &program.layout.steered.inert;
+            let inert = &program.steered.inert;
             for (momentum, &c) in program.momentum.iter_mut().zip(inert) {
-                *momentum = self.momenta[self.of.coordinates()[c]];
+                *momentum = self.momenta[self.of.steered.coordinates[c]];
             }
             let full = &mut self.points[0];
             if !self.iteration.prepare() || !self.iteration.advance(&self.changes, &self.rows, full)
@@ -290,14 +289,14 @@ impl<'h> RecedingHorizon<'h> {
     fn keep(&mut self, source: Source) -> Source {
         let x = &self.iteration.x[..self.iteration.columns];
         self.points[0].copy_from_slice(x);
-        self.read(0);
+        self.read();
         source
     }
 
-    /// Reads the inputs of the first interval of a point, within their bounds.
-    fn read(&mut self, point: usize) {
+    /// Reads the inputs of the first interval of the first point, within their bounds.
+    fn read(&mut self) {
         let program = &self.iteration.program;
-        program.first_inputs(&self.points[point], &mut self.inputs);
+        program.first_inputs(&self.points[0], &mut self.inputs);
         for (value, input) in self.inputs.iter_mut().zip(&self.of.law().inputs) {
             let [low, high] = input.bounds;
             *value = value.max(low).min(high);
@@ -306,10 +305,9 @@ impl<'h> RecedingHorizon<'h> {
 
     /// Enters the state as changes of that of the plan; true if it is too far from it.
     fn take(&mut self) -> bool {
-        let (coordinates, model) = (self.of.coordinates(), self.of.model());
+        let (coordinates, model) = (&self.of.steered.coordinates, &self.of.model);
         let (places, rates) = self.state.values().split_at(coordinates.len());
         let Iteration { program, x, .. } = &self.iteration;
-        let layout = &program.layout;
         self.rates.fill(0.0);
         let unit = |c: usize| match model.is_length(coordinates[c]) {
             true => model.length(),
@@ -317,7 +315,7 @@ impl<'h> RecedingHorizon<'h> {
         };
         let mut is_far = false;
         for (c, value) in places.iter().enumerate() {
-            let (column, scale) = layout.coordinates[c];
+            let Reading { column, scale, .. } = program.readings[c];
             let change = value - scale * x[column];
             is_far |= change.abs() > ABSURD * unit(c);
             self.changes[c] = (column, change / scale);
@@ -325,7 +323,7 @@ impl<'h> RecedingHorizon<'h> {
         }
         let law = self.of.law();
         let motion = &law.at(law.h * self.interval as f64).state[places.len()..];
-        for ((&c, rate), motion) in layout.steered.inert.iter().zip(rates).zip(motion) {
+        for ((&c, rate), motion) in program.steered.inert.iter().zip(rates).zip(motion) {
             is_far |= (rate - motion).abs() * law.h > ABSURD_RATE * unit(c);
             self.rates[coordinates[c]] = *rate;
         }
@@ -333,8 +331,8 @@ impl<'h> RecedingHorizon<'h> {
         action.map.place(&mut self.instant);
         let (moving, momenta) = (&mut self.moving, &mut self.momenta);
         action.momentum_into(&mut self.instant, &self.rates, moving, momenta);
-        for (place, &c) in layout.steered.inert.iter().enumerate() {
-            let (row, scale) = layout.momenta[0][place];
+        for (place, &c) in program.steered.inert.iter().enumerate() {
+            let (row, scale) = program.momenta[0][place];
             let change = self.momenta[coordinates[c]] - program.momentum[place];
             self.rows[place] = (row, scale * change);
         }
@@ -360,27 +358,30 @@ pub(super) struct Shift {
 
 impl Shift {
     pub(super) fn new(program: &Program<'_>) -> Self {
-        let (columns, rows) = program.numbers();
-        let parts = program.layout.steered.parts;
-        let n = program.layout.width();
-        let (end, _) = program.layout.coordinates[(program.layout.intervals - 1) * n];
+        let unknowns = program.unknowns();
+        let parts = program.steered.parts;
+        let last = program.intervals - 1;
+        let end = program.at(last)[0].column;
         let between = program.between.iter().copied();
-        let last = program.layout.driven[program.layout.intervals - 1].iter();
+        let last = program.of_inputs(last).iter();
+        let column = |of: &Column| match *of {
+            Column::Instant { k, i } => unknowns.unknown(k + parts, i),
+            Column::Interval { k, s } => unknowns.scalar(k + parts, s),
+            _ => None,
+        };
+        let places: FxHashMap<Row, usize> = unknowns.rows.iter().copied().zip(0..).collect();
+        let row = |of: &Row| {
+            let mut next = *of;
+            if let Row::Instant { k, .. } | Row::Interval { k, .. } | Row::Limit { k, .. } =
+                &mut next
+            {
+                *k += parts;
+            }
+            places.get(&next).copied().filter(|_| next != *of)
+        };
         Self {
-            columns: successors(columns, |column| match column {
-                Column::Instant { k, i } => Column::Instant { k: k + parts, i },
-                Column::Interval { k, s } => Column::Interval { k: k + parts, s },
-                other => other,
-            }),
-            rows: successors(rows, |row| match row {
-                Row::Instant { k, i } => Row::Instant { k: k + parts, i },
-                Row::Interval { k, s } => Row::Interval { k: k + parts, s },
-                Row::Limit { limit, k } => Row::Limit {
-                    limit,
-                    k: k + parts,
-                },
-                other => other,
-            }),
+            columns: successors(&unknowns.columns, column),
+            rows: successors(&unknowns.rows, row),
             between: between.filter(|(_, [from, _], _)| *from >= end).collect(),
             last: last.map(|input| input.column).collect(),
         }
@@ -393,7 +394,7 @@ impl Shift {
         before: &mut [f64],
         after: &mut [f64],
     ) {
-        let end = of.program.layout.intervals;
+        let end = of.program.intervals;
         before.fill(0.0);
         of.program.refer(end, before);
         of.program.begin += 1;
@@ -425,11 +426,8 @@ impl Shift {
     }
 }
 
-/// Places of entries with the places of their successors.
-fn successors<T: Copy + Eq + Hash>(list: &[T], next: impl Fn(T) -> T) -> Vec<(usize, usize)> {
-    let places = places(list);
+/// Places of entries with those of their successors.
+fn successors<T>(list: &[T], next: impl Fn(&T) -> Option<usize>) -> Vec<(usize, usize)> {
     let all = list.iter().enumerate();
-    all.filter_map(|(i, one)| Some((i, *places.get(&next(*one))?)))
-        .filter(|(i, next)| i != next)
-        .collect()
+    all.filter_map(|(i, one)| Some((i, next(one)?))).collect()
 }

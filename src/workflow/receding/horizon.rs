@@ -3,9 +3,7 @@
 use crate::control::problem::{
     Ahead, BoundaryState, Control, Duration, Guess, Limit, Objective, Regulator, Rest, SoughtHold,
 };
-use crate::control::{
-    BoundaryConditions, BoundaryError, Carried, InitialGuess, Rests, Transcription,
-};
+use crate::control::{BoundaryConditions, BoundaryError, InitialGuess, Rests, Transcription};
 use crate::dynamics::{DiscreteTrajectory, step_inputs};
 use crate::feedback::{Law, Measured};
 use crate::ipopt::{IpoptError, Options, StartingPoint, solve};
@@ -16,8 +14,7 @@ use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, discrete_trajectory};
 use crate::workflow::optimise::optimise;
 use crate::workflow::optimum::SolveLimits;
-use crate::workflow::receding::layout::{Reference, Steered};
-use crate::workflow::receding::program::Program;
+use crate::workflow::receding::program::{Program, Reference, Steered};
 use crate::workflow::regulator::{Along, NOTHING_HOLDS, NoRegulator, predicting};
 use std::ops::ControlFlow;
 use thiserror::Error;
@@ -29,15 +26,15 @@ const INTEGRAL: &str =
 /// A motion to follow, with all that its controllers share.
 #[derive(Debug)]
 pub struct Horizon {
-    model: Model,
+    pub(super) model: Model,
     boundary: BoundaryConditions,
     /// The problem in short steps.
     control: Control,
     reference: Reference,
     law: Law,
-    steered: Steered,
-    /// Weight of inputs as parts of their ranges.
-    of_inputs: f64,
+    pub(super) steered: Steered,
+    /// Weight of inputs as parts of their ranges, the unit of the barrier.
+    pub(super) of_inputs: f64,
     /// Intervals from a measurement to its effect.
     delay: usize,
 }
@@ -104,6 +101,7 @@ impl Horizon {
             of_inputs: task.inputs,
             control: Control {
                 start: BoundaryState::Free,
+                input_intervals: parts,
                 ..control
             },
             law: found.law,
@@ -172,9 +170,9 @@ impl Horizon {
     ) -> Result<(Vec<f64>, Status), IpoptError> {
         let mut program = self.program();
         program.begin = interval;
-        let start = program.layout.coordinates.iter().zip(state);
-        let start = start.take(self.coordinates().len());
-        let values: Vec<f64> = start.map(|((_, scale), v)| v / scale).collect();
+        let start = program.readings.iter().zip(state);
+        let start = start.take(self.steered.coordinates.len());
+        let values: Vec<f64> = start.map(|(reading, v)| v / reading.scale).collect();
         let momenta = self.steered.momenta(&self.model, state);
         program.hold_start(&values, &momenta);
         let mut x = vec![0.0; program.variables().count()];
@@ -186,19 +184,6 @@ impl Horizon {
         let mut inputs = vec![0.0; self.law.inputs.len()];
         program.first_inputs(&found.x, &mut inputs);
         Ok((inputs, found.status))
-    }
-
-    pub(super) fn model(&self) -> &Model {
-        &self.model
-    }
-
-    /// Weight of inputs as parts of their ranges, the unit of the barrier.
-    pub(super) fn weight(&self) -> f64 {
-        self.of_inputs
-    }
-
-    pub(super) fn coordinates(&self) -> &[usize] {
-        &self.steered.coordinates
     }
 
     /// The program of the horizon at the start of the motion.
@@ -219,7 +204,7 @@ impl Horizon {
         let mut z = vec![self.boundary.start.z.clone(); steps + 1];
         for (k, z) in z.iter_mut().enumerate() {
             let state = &self.reference.at(k / parts).state;
-            let each = self.coordinates().iter().zip(state);
+            let each = self.steered.coordinates.iter().zip(state);
             each.for_each(|(&i, value)| z[i] = *value);
         }
         let count = self.model.variables.of(Time::Interval).len();
@@ -230,17 +215,7 @@ impl Horizon {
                 scalars[scalar] = if is_squared { value.sqrt() } else { *value };
             }
         }
-        InitialGuess {
-            discrete: DiscreteTrajectory {
-                times: (0..=steps).map(|k| k as f64 * h).collect(),
-                z,
-                scalars,
-                ..DiscreteTrajectory::default()
-            },
-            h,
-            costates: None,
-            carried: Carried::default(),
-        }
+        InitialGuess::of_motion(DiscreteTrajectory::in_steps(h, z, scalars), h)
     }
 }
 

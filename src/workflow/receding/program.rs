@@ -6,35 +6,41 @@
 //!
 //! with the costs of the regulator (`workflow::regulator`): S_N counts all that follows. The equations are those of the transcription with the
 //! state q_0, p_0 at their start. Their last row, which says that the motion comes to rest, has the momentum p_N as an unknown here. The motion is that
-//! of the regulator in short steps, a number of them in each interval, under the same inputs: these are one column.
-//!
-//! Costs of deviations from a motion, with their derivatives.
+//! of the regulator in short steps, a number of them in each interval, under the same inputs: these are one column. All costs are weights of products of
+//! deviations `d`, `½ dᵀW d`, and their derivatives follow from those of the deviations.
 
-use crate::control::{Column, Row, Transcription};
-use crate::feedback::product;
+use crate::control::{Column, Numbering, Transcription};
+use crate::dynamics::Start;
+use crate::feedback::{self, product};
+use crate::model::Model;
 use crate::nlp::squares::{InSquares, Squares};
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
-use crate::workflow::receding::layout::{
-    Between, Layout, Reference, Steered, between, held_over_parts,
-};
+use crate::workflow::regulator::{Regulated, RegulatedStep};
+use nalgebra::DMatrix;
+use std::mem;
 
 /// The program.
 #[derive(Debug)]
 pub(super) struct Program<'m> {
     motion: InSquares<Transcription<'m>>,
     pub(super) reference: &'m Reference,
-    pub(super) layout: Layout<'m>,
+    pub(super) steered: &'m Steered,
+    /// Number of intervals.
+    pub(super) intervals: usize,
+    /// Instant by instant the coordinates of the state and the inputs of the interval behind it; at the end coordinates and momenta.
+    pub(super) readings: Vec<Reading>,
+    /// Place of the first one of the end.
+    end: usize,
+    /// Rows of the momenta of the first and of the last instant, with their scales.
+    pub(super) momenta: [Vec<(usize, f64)>; 2],
+    /// Rows on which constant disturbances act, with the scaled time of their action, and the number of the force.
+    forced: Vec<(usize, f64, usize)>,
     bounds: Bounds,
     row_bounds: Bounds,
     jacobian: Entries,
     hessian: Entries,
     /// Numbers of entries of the motion alone.
     counts: [usize; 2],
-    /// Column here of each one of the transcription, and their values there.
-    own: Vec<usize>,
-    point: Vec<f64>,
-    /// Columns of the motion.
-    of_columns: Vec<Column>,
     /// Columns of coordinates within an interval, with those at both of its ends, and the part of it that has passed there.
     pub(super) between: Vec<Between>,
     /// Number of columns of the motion.
@@ -43,8 +49,9 @@ pub(super) struct Program<'m> {
     pub(super) begin: usize,
     /// Momenta at the start, in the order of the state.
     pub(super) momentum: Vec<f64>,
-    /// Deviations of the state at the end, and of coordinates, for one evaluation.
-    pub(super) deviation: Vec<f64>,
+    /// Deviation of each reading at the point evaluated last, with its first and second derivative by the column, and the slope of the costs by it.
+    deviations: Vec<[f64; 3]>,
+    slopes: Vec<f64>,
     /// Constant disturbances with their effects.
     pub(super) lasting: Lasting,
 }
@@ -54,7 +61,6 @@ pub(super) struct Program<'m> {
 pub(super) struct Lasting {
     /// The forces, then the changes of the inputs against them.
     values: Vec<f64>,
-    forces: usize,
     /// Changes of the state at rest, coordinates then momenta, and of the inputs; slope of the cost at the end.
     pub(super) state: Vec<f64>,
     pub(super) inputs: Vec<f64>,
@@ -70,102 +76,118 @@ impl<'m> Program<'m> {
     ) -> Self {
         let inert = steered.inert.len();
         let (state, inputs) = (steered.coordinates.len() + inert, steered.inputs.len());
-        let (forces, parts) = (steered.forced.len(), steered.parts);
-        let unknowns = motion.unknowns();
-        let scalars: Vec<usize> = steered.inputs.iter().map(|&(s, _)| s).collect();
-        let (own, of_columns) = held_over_parts(&unknowns.columns, &scalars, parts);
-        let columns = of_columns.len();
+        let intervals = motion.intervals() / steered.parts;
+        let columns = motion.variables().count();
+        let row = |k: usize, c: usize| {
+            let row = motion.unknowns().row(k, steered.coordinates[c]);
+            let row = row.expect("a balance");
+            (row, motion.row_scale(row))
+        };
+        let of_instant = |k: usize| steered.inert.iter().map(|&c| row(k, c)).collect();
+        let momenta: [Vec<(usize, f64)>; 2] = [0, motion.intervals()].map(of_instant);
         let squares = motion.squares();
         let of_squares = Squares::of(&motion, squares.clone());
-        let layout = Layout::new(&motion, &own, steered);
+        let mut ones = vec![1.0; columns];
+        of_squares.square(&mut ones);
+        // V² = scale² u w of w = V²/u.
+        let unit = |column: usize| squares.contains(&column).then(|| 1.0 / ones[column]);
+        let mut readings = readings(&motion, steered, unit);
+        let end = readings.len() - steered.coordinates.len();
+        let at_end = momenta[1].iter().zip(columns..);
+        readings.extend(at_end.map(|(&(_, scale), column)| Reading {
+            column,
+            scale: 1.0 / scale,
+            is_root: false,
+        }));
         let [jacobian, hessian] = [motion.jacobian_structure(), motion.hessian_structure()];
-        let mut given = motion.variables().clone();
-        of_squares.square(&mut given.lower);
-        of_squares.square(&mut given.upper);
-        let size = columns + inert;
-        let mut bounds = Bounds::none(size);
-        for (column, &own) in own.iter().enumerate() {
-            bounds.lower[own] = given.lower[column];
-            bounds.upper[own] = given.upper[column];
-        }
+        let mut bounds = motion.variables().clone();
+        of_squares.square(&mut bounds.lower);
+        of_squares.square(&mut bounds.upper);
+        (0..inert).for_each(|_| bounds.push(f64::NEG_INFINITY, f64::INFINITY));
         let mut out = Self {
             row_bounds: motion.constraints().clone(),
             counts: [jacobian.count(), hessian.count()],
+            between: between(motion.unknowns(), steered.parts),
+            forced: forced(&motion, steered),
             motion: InSquares::new(motion, of_squares, &jacobian, &hessian),
-            point: vec![0.0; own.len()],
             reference,
-            deviation: vec![0.0; state],
+            steered,
+            intervals,
+            deviations: vec![[0.0; 3]; readings.len()],
+            slopes: vec![0.0; readings.len()],
+            readings,
+            end,
+            momenta,
             momentum: vec![0.0; inert],
             lasting: Lasting {
-                values: vec![0.0; forces + inputs],
-                forces,
+                values: vec![0.0; steered.forced.len() + inputs],
                 state: vec![0.0; state],
                 inputs: vec![0.0; inputs],
                 slope: vec![0.0; state],
             },
-            layout,
             bounds,
             jacobian,
             hessian,
-            own,
-            between: between(&of_columns, parts),
-            of_columns,
             columns,
             begin: 0,
         };
-        out.take_structure();
+        out.add_structure();
         out
     }
 
-    /// Columns of the entries become those of this program.
-    fn take_structure(&mut self) {
-        for column in &mut self.jacobian.cols {
-            *column = self.own[*column as usize] as u32;
+    /// Number of readings of an instant and the interval behind it.
+    fn stride(&self) -> usize {
+        self.end / self.intervals
+    }
+
+    /// The readings of an instant and the interval behind it, or of the end.
+    pub(super) fn at(&self, k: usize) -> &[Reading] {
+        let first = k * self.stride();
+        match k < self.intervals {
+            true => &self.readings[first..first + self.stride()],
+            false => &self.readings[first..],
         }
-        let Entries { rows, cols } = &mut self.hessian;
-        for (row, col) in rows.iter_mut().zip(cols) {
-            let [a, b] = [*row, *col].map(|column| self.own[column as usize] as u32);
-            (*row, *col) = (a.max(b), a.min(b));
-        }
-        self.add_structure();
+    }
+
+    /// Those of the inputs of an interval.
+    pub(super) fn of_inputs(&self, k: usize) -> &[Reading] {
+        &self.at(k)[self.steered.coordinates.len()..]
     }
 
     /// Adds the entries of the momenta at the end, and of the costs.
     fn add_structure(&mut self) {
-        for (place, &(row, _)) in self.layout.momenta[1].iter().enumerate() {
+        for (place, &(row, _)) in self.momenta[1].iter().enumerate() {
             self.jacobian.push(row, self.columns + place);
         }
-        let (n, last) = (self.layout.width(), self.layout.intervals);
-        let column = |k: usize, c: usize| self.layout.coordinates[k * n + c].0;
-        let mut add = |a: usize, b: usize| self.hessian.push(a.max(b), a.min(b));
-        for k in 0..last {
-            for a in 0..n {
-                (0..=a).for_each(|b| add(column(k, a), column(k, b)));
-            }
-            for c in 0..n {
-                add(column(k + 1, c), column(k, c));
-            }
-        }
-        let size = n + self.layout.steered.inert.len();
-        let of_end = |c: usize| match c < n {
-            true => column(last, c),
-            false => self.columns + c - n,
+        let mut hessian = mem::take(&mut self.hessian);
+        let column = |place: usize| self.readings[place].column;
+        self.weights(|a, b, _| {
+            let [a, b] = [a, b].map(column);
+            hessian.push(a.max(b), a.min(b));
+        });
+        self.hessian = hessian;
+    }
+
+    /// Values and changes by constant disturbances of what is read at an instant of the horizon and in the interval behind it, or at its end.
+    fn targets(&self, k: usize) -> impl Iterator<Item = (&f64, &f64)> {
+        let point = self.reference.at(self.begin + k);
+        let (state, inputs) = match k < self.intervals {
+            true => (
+                &point.state[..self.steered.coordinates.len()],
+                &*point.inputs,
+            ),
+            false => (&*point.state, &[][..]),
         };
-        for a in 0..size {
-            (0..=a).for_each(|b| add(of_end(a), of_end(b)));
-        }
-        for input in self.layout.driven.iter().flatten() {
-            add(input.column, input.column);
-        }
+        let state = state.iter().zip(&self.lasting.state);
+        state.chain(inputs.iter().zip(&self.lasting.inputs))
     }
 
     /// Inputs of the first interval: V, N, N mm.
     pub(super) fn first_inputs(&self, x: &[f64], out: &mut [f64]) {
-        let inputs = self.layout.driven[0]
-            .iter()
-            .zip(&self.layout.steered.inputs);
+        let inputs = self.of_inputs(0).iter();
+        let inputs = inputs.zip(&self.steered.inputs);
         for (value, (input, (_, is_squared))) in out.iter_mut().zip(inputs) {
-            let [acting, ..] = input.reading(x[input.column]);
+            let [acting, ..] = input.of(x[input.column]);
             *value = match is_squared {
                 true => acting.max(0.0).sqrt(),
                 false => acting,
@@ -175,59 +197,42 @@ impl<'m> Program<'m> {
 
     /// The state of the reference at an instant of the horizon, and its inputs, as values of the columns.
     pub(super) fn refer(&self, k: usize, x: &mut [f64]) {
-        let n = self.layout.width();
-        let point = self.reference.at(self.begin + k);
-        for c in 0..n {
-            let (column, scale) = self.layout.coordinates[k * n + c];
-            x[column] = point.state[c] / scale;
-        }
-        if k == self.layout.intervals {
-            for (place, &(_, scale)) in self.layout.momenta[1].iter().enumerate() {
-                x[self.columns + place] = point.momentum[place] * scale;
-            }
-            return;
-        }
-        for (input, value) in self.layout.driven[k].iter().zip(&point.inputs) {
-            let value = if input.is_root { value.sqrt() } else { *value };
-            x[input.column] = value / input.scale;
+        for (reading, (value, _)) in self.at(k).iter().zip(self.targets(k)) {
+            let value = match reading.is_root {
+                true => value.sqrt(),
+                false => *value,
+            };
+            x[reading.column] = value / reading.scale;
         }
     }
 
     /// The motion that is followed as values of the columns, on straight lines between its instants.
     pub(super) fn refer_all(&self, x: &mut [f64]) {
-        (0..=self.layout.intervals).for_each(|k| self.refer(k, x));
+        (0..=self.intervals).for_each(|k| self.refer(k, x));
         for &(i, [from, to], part) in &self.between {
             x[i] = x[from] + part * (x[to] - x[from]);
         }
     }
 
     /// Columns and rows of the motion.
-    pub(super) fn numbers(&self) -> (&[Column], &[Row]) {
-        (&self.of_columns, &self.motion.program.unknowns().rows)
-    }
-
-    /// Values of the columns of the transcription.
-    fn spread(&mut self, x: &[f64]) {
-        for (value, &own) in self.point.iter_mut().zip(&self.own) {
-            *value = x[own];
-        }
+    pub(super) fn unknowns(&self) -> &Numbering {
+        self.motion.program.unknowns()
     }
 
     /// Takes constant disturbances, and the changes of inputs against them, for the horizon that begins now.
     pub(super) fn load(&mut self, forces: &[f64], against: &[f64]) {
-        let end = self.reference.at(self.begin + self.layout.intervals);
+        let end = self.reference.at(self.begin + self.intervals);
         let (Some(rest), Some(slope)) = (&self.reference.rest, &end.slope) else {
             return;
         };
         let Lasting {
             values,
-            forces: count,
             state,
             inputs,
             slope: of_end,
         } = &mut self.lasting;
-        values[..*count].copy_from_slice(forces);
-        values[*count..].copy_from_slice(against);
+        let all = values.iter_mut().zip(forces.iter().chain(against));
+        all.for_each(|(to, value)| *to = *value);
         inputs.copy_from_slice(against);
         for (matrix, to) in [(rest, state), (slope, of_end)] {
             let rows = to.iter_mut().enumerate();
@@ -237,9 +242,9 @@ impl<'m> Program<'m> {
 
     /// Holds the state at the start: values of its columns, and its momenta.
     pub(super) fn hold_start(&mut self, values: &[f64], momenta: &[f64]) {
-        for (&(column, _), value) in self.layout.coordinates.iter().zip(values) {
-            self.bounds.lower[column] = *value;
-            self.bounds.upper[column] = *value;
+        for (reading, value) in self.readings.iter().zip(values) {
+            self.bounds.lower[reading.column] = *value;
+            self.bounds.upper[reading.column] = *value;
         }
         self.momentum.copy_from_slice(momenta);
     }
@@ -263,191 +268,300 @@ impl Nlp for Program<'_> {
     }
 
     fn objective(&mut self, x: &[f64]) -> f64 {
-        self.costs(x)
+        self.deviate(x);
+        let d = &self.deviations;
+        let mut sum = 0.0;
+        self.weights(|a, b, weight| {
+            let part = if a == b { 0.5 } else { 1.0 };
+            sum += part * weight * d[a][0] * d[b][0];
+        });
+        let of_end = d[self.end..].iter().zip(&self.lasting.slope);
+        sum + of_end.map(|([d, ..], slope)| d * slope).sum::<f64>()
     }
 
     fn gradient(&mut self, x: &[f64], grad: &mut [f64]) {
-        self.slopes(x, grad);
+        self.deviate(x);
+        grad.fill(0.0);
+        let readings = self.readings.iter().zip(&self.deviations);
+        for ((reading, [_, by_column, _]), slope) in readings.zip(&self.slopes) {
+            grad[reading.column] += by_column * slope;
+        }
     }
 
     fn constraint(&mut self, x: &[f64], g: &mut [f64]) {
-        self.spread(x);
-        self.motion.constraint(&self.point, g);
-        for (&(row, scale), momentum) in self.layout.momenta[0].iter().zip(&self.momentum) {
+        self.motion.constraint(&x[..self.columns], g);
+        for (&(row, scale), momentum) in self.momenta[0].iter().zip(&self.momentum) {
             g[row] += scale * momentum;
         }
-        for (&(row, _), momentum) in self.layout.momenta[1].iter().zip(&x[self.columns..]) {
+        for (&(row, _), momentum) in self.momenta[1].iter().zip(&x[self.columns..]) {
             g[row] -= momentum;
         }
-        for &(row, time, force) in &self.layout.forced {
+        for &(row, time, force) in &self.forced {
             g[row] += time * self.lasting.values[force];
         }
     }
 
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) {
         let (motion, momenta) = values.split_at_mut(self.counts[0]);
-        self.spread(x);
-        self.motion.jacobian(&self.point, motion);
+        self.motion.jacobian(&x[..self.columns], motion);
         momenta.fill(-1.0);
     }
 
     fn hessian(&mut self, x: &[f64], sigma: f64, costates: &[f64], values: &mut [f64]) {
         let (motion, costs) = values.split_at_mut(self.counts[1]);
-        self.spread(x);
-        self.motion.hessian(&self.point, sigma, costates, motion);
-        self.curvatures(x, sigma, costs);
+        let of_motion = &x[..self.columns];
+        self.motion.hessian(of_motion, sigma, costates, motion);
+        self.deviate(x);
+        let d = &self.deviations;
+        let mut costs = costs.iter_mut();
+        self.weights(|a, b, weight| {
+            let own = match a == b {
+                true => d[a][2] * self.slopes[a],
+                false => 0.0,
+            };
+            let value = costs.next().expect("an entry");
+            *value = sigma * (weight * d[a][1] * d[b][1] + own);
+        });
     }
 
     fn stages(&self) -> Option<Vec<Stage>> {
-        let given = self.motion.stages()?;
-        let last = Stage::Of(2 * (self.layout.intervals * self.layout.steered.parts) as u32);
-        let mut stages = vec![last; self.columns + self.layout.steered.inert.len()];
-        for (stage, &own) in given.into_iter().zip(&self.own).rev() {
-            stages[own] = stage;
-        }
+        let mut stages = self.motion.stages()?;
+        let last = Stage::Of(2 * (self.intervals * self.steered.parts) as u32);
+        stages.resize(self.variables().count(), last);
         Some(stages)
     }
 }
 
 impl Program<'_> {
-    /// Deviations of the coordinates of an instant.
-    fn deviate(&mut self, x: &[f64], k: usize) {
-        let n = self.layout.width();
-        let point = self.reference.at(self.begin + k);
-        for c in 0..n {
-            let (column, scale) = self.layout.coordinates[k * n + c];
-            self.deviation[c] = scale * x[column] - point.state[c] - self.lasting.state[c];
-        }
-    }
-
-    /// Deviations of coordinates and momenta at the end.
-    fn deviate_at_end(&mut self, x: &[f64]) {
-        let (n, last) = (self.layout.width(), self.layout.intervals);
-        self.deviate(x, last);
-        let point = self.reference.at(self.begin + last);
-        for (place, &(_, scale)) in self.layout.momenta[1].iter().enumerate() {
-            let momentum = x[self.columns + place] / scale;
-            let rest = self.lasting.state[n + place];
-            self.deviation[n + place] = momentum - point.momentum[place] - rest;
-        }
-    }
-
-    /// Difference of the deviations of a coordinate over an interval.
-    fn step(&self, x: &[f64], k: usize, c: usize) -> f64 {
-        let n = self.layout.width();
-        let at = |k: usize| {
-            let (column, scale) = self.layout.coordinates[k * n + c];
-            scale * x[column] - self.reference.at(self.begin + k).state[c]
-        };
-        at(k + 1) - at(k)
-    }
-
-    /// Hands over column, reading, deviation and weight of each input.
-    fn each_input(&self, x: &[f64], mut to: impl FnMut(usize, [f64; 3], f64, f64)) {
-        for (k, inputs) in self.layout.driven.iter().enumerate() {
-            let given = &self.reference.at(self.begin + k).inputs;
-            for (i, (input, given)) in inputs.iter().zip(given).enumerate() {
-                let reading = input.reading(x[input.column]);
-                let off = reading[0] - given - self.lasting.inputs[i];
-                to(input.column, reading, off, self.reference.inputs[i]);
+    /// Finds the deviations of all readings at a point, and the slopes of the costs by them.
+    fn deviate(&mut self, x: &[f64]) {
+        let (mut deviations, mut slopes) =
+            (mem::take(&mut self.deviations), mem::take(&mut self.slopes));
+        let mut places = deviations.iter_mut().zip(&self.readings);
+        for k in 0..=self.intervals {
+            for ((target, change), (deviation, reading)) in self.targets(k).zip(&mut places) {
+                *deviation = reading.of(x[reading.column]);
+                deviation[0] = deviation[0] - target - change;
             }
         }
-    }
-
-    /// Columns of the values of the state at the end with their scales.
-    fn end_column(&self, c: usize) -> (usize, f64) {
-        let n = self.layout.width();
-        match c < n {
-            true => self.layout.coordinates[self.layout.intervals * n + c],
-            false => (self.columns + c - n, 1.0 / self.layout.momenta[1][c - n].1),
-        }
-    }
-
-    /// The sum of all costs.
-    pub(super) fn costs(&mut self, x: &[f64]) -> f64 {
-        let (n, last) = (self.layout.width(), self.layout.intervals);
-        let mut sum = 0.0;
-        for k in 0..last {
-            self.deviate(x, k);
-            let places = &self.reference.at(self.begin + k).places;
-            sum += square(&self.deviation[..n], places);
-            for c in 0..n {
-                sum += self.layout.steered.rates[c] * self.step(x, k, c).powi(2);
+        slopes.fill(0.0);
+        let of_end = slopes[self.end..].iter_mut();
+        let of_end = of_end.zip(&self.lasting.slope);
+        of_end.for_each(|(to, slope)| *to = *slope);
+        self.weights(|a, b, weight| {
+            slopes[a] += weight * deviations[b][0];
+            if a != b {
+                slopes[b] += weight * deviations[a][0];
             }
-        }
-        self.deviate_at_end(x);
-        sum += square(&self.deviation, &self.reference.at(self.begin + last).end);
-        let slope = self.deviation.iter().zip(&self.lasting.slope);
-        sum += 2.0 * slope.map(|(d, slope)| d * slope).sum::<f64>();
-        self.each_input(x, |_, _, off, weight| sum += weight * off.powi(2));
-        0.5 * sum
-    }
-
-    /// Its gradient.
-    pub(super) fn slopes(&mut self, x: &[f64], grad: &mut [f64]) {
-        grad.fill(0.0);
-        let (n, last) = (self.layout.width(), self.layout.intervals);
-        for k in 0..last {
-            self.deviate(x, k);
-            let places = &self.reference.at(self.begin + k).places;
-            for a in 0..n {
-                let (column, scale) = self.layout.coordinates[k * n + a];
-                grad[column] += scale * product(places, a, &self.deviation[..n]);
-                let slope = self.layout.steered.rates[a] * self.step(x, k, a);
-                grad[column] -= scale * slope;
-                let (column, scale) = self.layout.coordinates[(k + 1) * n + a];
-                grad[column] += scale * slope;
-            }
-        }
-        self.deviate_at_end(x);
-        let end = &self.reference.at(self.begin + last).end;
-        for a in 0..self.deviation.len() {
-            let (column, scale) = self.end_column(a);
-            let slope = product(end, a, &self.deviation);
-            grad[column] += scale * (slope + self.lasting.slope[a]);
-        }
-        self.each_input(x, |column, [_, slope, _], off, weight| {
-            grad[column] += weight * off * slope;
         });
+        (self.deviations, self.slopes) = (deviations, slopes);
     }
 
-    /// Its second derivatives times a factor, in the order of the entries.
-    pub(super) fn curvatures(&self, x: &[f64], sigma: f64, costs: &mut [f64]) {
-        let (n, last) = (self.layout.width(), self.layout.intervals);
-        let mut costs = costs.iter_mut();
-        let mut put = |value: f64| *costs.next().expect("an entry") = sigma * value;
-        let scale = |k: usize, c: usize| self.layout.coordinates[k * n + c].1;
-        let rates = &self.layout.steered.rates;
-        for k in 0..last {
-            let places = &self.reference.at(self.begin + k).places;
-            // The step before and that behind.
-            let steps = if k == 0 { 1.0 } else { 2.0 };
-            for a in 0..n {
-                for b in 0..=a {
-                    let of_rates = if a == b { steps * rates[a] } else { 0.0 };
-                    put(scale(k, a) * scale(k, b) * (places[(a, b)] + of_rates));
+    /// Hands over the weights of products of deviations, with the places of both among the readings: of rates over each step, of the state at each
+    /// instant and of the inputs behind it, and of the state at the end.
+    fn weights(&self, mut put: impl FnMut(usize, usize, f64)) {
+        let (stride, end) = (self.stride(), self.end);
+        for k in 0..=self.intervals {
+            let (first, point) = (k * stride, self.reference.at(self.begin + k));
+            let is_end = first == end;
+            let costs = if is_end { &point.end } else { &point.places };
+            for a in 0..costs.nrows() {
+                (0..=a).for_each(|b| put(first + a, first + b, costs[(a, b)]));
+            }
+            if is_end {
+                break;
+            }
+            for (c, &weight) in self.steered.rates.iter().enumerate() {
+                if weight > 0.0 {
+                    let [here, next] = [first + c, first + stride + c];
+                    put(here, here, weight);
+                    put(next, here, -weight);
+                    put(next, next, weight);
                 }
             }
-            for (c, rate) in rates.iter().enumerate() {
-                put(-scale(k, c) * scale(k + 1, c) * rate);
+            for (i, &weight) in self.reference.inputs.iter().enumerate() {
+                let place = first + self.steered.coordinates.len() + i;
+                put(place, place, weight);
             }
         }
-        let end = &self.reference.at(self.begin + last).end;
-        for a in 0..self.deviation.len() {
-            for b in 0..=a {
-                let of_rates = if a == b && a < n { rates[a] } else { 0.0 };
-                let scales = self.end_column(a).1 * self.end_column(b).1;
-                put(scales * (end[(a, b)] + of_rates));
-            }
-        }
-        self.each_input(x, |_, [_, slope, curvature], off, weight| {
-            put(weight * (slope * slope + off * curvature));
-        });
     }
 }
 
-/// dᵀ M d.
-fn square(d: &[f64], of: &nalgebra::DMatrix<f64>) -> f64 {
-    let rows = d.iter().enumerate();
-    rows.map(|(a, value)| value * product(of, a, d)).sum()
+/// A coordinate, a momentum or an input as it acts, read from a column.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reading {
+    pub(super) column: usize,
+    /// Factor of the column.
+    pub(super) scale: f64,
+    /// True if an input acts by its square and the column is none.
+    pub(super) is_root: bool,
+}
+
+impl Reading {
+    /// Its value, with its first and second derivative by the column.
+    pub(super) fn of(&self, x: f64) -> [f64; 3] {
+        let (value, slope) = (self.scale * x, self.scale);
+        match self.is_root {
+            true => [value * value, 2.0 * value * slope, 2.0 * slope * slope],
+            false => [value, slope, 0.0],
+        }
+    }
+}
+
+/// The coordinates of the state at each instant and the inputs of the interval behind it; `unit` is that of a square where a column is one.
+fn readings(
+    motion: &Transcription<'_>,
+    steered: &Steered,
+    unit: impl Fn(usize) -> Option<f64>,
+) -> Vec<Reading> {
+    let unknowns = motion.unknowns();
+    let mut out = Vec::new();
+    for k in (0..=motion.intervals()).step_by(steered.parts) {
+        let coordinates = steered.coordinates.iter();
+        let coordinates = coordinates.map(|&i| (unknowns.unknown(k, i), false));
+        let inputs = steered.inputs.iter().filter(|_| k < motion.intervals());
+        let inputs = inputs.map(|&(s, is_squared)| (unknowns.scalar(k, s), is_squared));
+        for (column, is_squared) in coordinates.chain(inputs) {
+            let column = column.expect("an open coordinate or a sought input");
+            let scale = motion.column_scale(column);
+            let unit = unit(column);
+            out.push(Reading {
+                column,
+                scale: unit.map_or(scale, |unit| scale * scale * unit),
+                is_root: is_squared && unit.is_none(),
+            });
+        }
+    }
+    out
+}
+
+/// Rows on which constant disturbances act, with the scaled time of their action, and the number of the force.
+fn forced(motion: &Transcription<'_>, steered: &Steered) -> Vec<(usize, f64, usize)> {
+    let mut out = Vec::new();
+    for k in 0..=motion.intervals() {
+        // Half of a force acts before an instant, and half behind.
+        let is_end = k == 0 || k == motion.intervals();
+        let time = if is_end { 0.5 * steered.h } else { steered.h };
+        for (force, &i) in steered.forced.iter().enumerate() {
+            let row = motion.unknowns().row(k, i).expect("a balance");
+            out.push((row, motion.row_scale(row) * time, force));
+        }
+    }
+    out
+}
+
+/// A column of a coordinate within an interval, those at both of its ends, and the part of the interval that has passed there.
+pub(super) type Between = (usize, [usize; 2], f64);
+
+/// Columns of coordinates within intervals.
+fn between(unknowns: &Numbering, parts: usize) -> Vec<Between> {
+    let all = unknowns.columns.iter().enumerate();
+    let of = all.filter_map(|(place, &column)| match column {
+        Column::Instant { k, i } if k % parts > 0 => {
+            let from = k - k % parts;
+            let part = (k - from) as f64 / parts as f64;
+            let [before, after] = [from, from + parts].map(|k| unknowns.unknown(k, i));
+            Some((place, [before?, after?], part))
+        }
+        _ => None,
+    });
+    of.collect()
+}
+
+/// State and inputs of a horizon, in the order of its law.
+#[derive(Clone, Debug)]
+pub(super) struct Steered {
+    /// Coordinates of the state, and places of those with momenta among them.
+    pub(super) coordinates: Vec<usize>,
+    pub(super) inert: Vec<usize>,
+    /// Scalars of the inputs, with those that act by their squares.
+    pub(super) inputs: Vec<(usize, bool)>,
+    /// Weight of the rate of each coordinate, for differences of a step.
+    pub(super) rates: Vec<f64>,
+    /// Coordinates on which constant disturbances act.
+    pub(super) forced: Vec<usize>,
+    /// Number of steps in an interval, and the length of one in ms.
+    pub(super) parts: usize,
+    pub(super) h: f64,
+}
+
+impl Steered {
+    /// Momenta of a state of coordinates and rates.
+    pub(super) fn momenta(&self, model: &Model, state: &[f64]) -> Vec<f64> {
+        let of = &self.coordinates;
+        let mut z = model.reference_coordinates();
+        let mut rates = vec![0.0; model.coordinate_count()];
+        of.iter().zip(state).for_each(|(&i, value)| z[i] = *value);
+        let of_rates = self.inert.iter().zip(&state[of.len()..]);
+        of_rates.for_each(|(&c, rate)| rates[of[c]] = *rate);
+        let start = Start::with_rates(model, z, &rates);
+        let inert = self.inert.iter();
+        inert.map(|&c| start.momentum[of[c]]).collect()
+    }
+}
+
+/// The motion at an instant, with the costs there.
+#[derive(Clone, Debug)]
+pub(super) struct Point {
+    /// Coordinates, then momenta of those that have them.
+    pub(super) state: Vec<f64>,
+    /// Inputs of the interval behind it, or their squares: V, V², N, N mm.
+    pub(super) inputs: Vec<f64>,
+    /// Cost of the coordinates.
+    pub(super) places: DMatrix<f64>,
+    /// Cost of coordinates and momenta, as those of all time that follows.
+    pub(super) end: DMatrix<f64>,
+    /// Slope of that cost by constant disturbances and the inputs against them; none without such forces.
+    pub(super) slope: Option<DMatrix<f64>>,
+}
+
+/// A motion that ends in a state that is held.
+#[derive(Clone, Debug)]
+pub(super) struct Reference {
+    /// Its instants; the last is the state that is held.
+    points: Vec<Point>,
+    /// Cost of each input, or of its square.
+    pub(super) inputs: Vec<f64>,
+    /// Change of the state at rest by constant disturbances and the inputs against them; none without such forces.
+    pub(super) rest: Option<DMatrix<f64>>,
+}
+
+impl Reference {
+    /// That of a regulator, with the momenta of a state; none where the goal is not held.
+    pub(super) fn new(of: &Regulated, momenta: impl Fn(&[f64]) -> Vec<f64>) -> Option<Self> {
+        let (held_step, held) = of.held.as_ref()?;
+        let law = &of.law;
+        let mut after = of.end_cost.clone();
+        let mut ends = vec![];
+        for step in of.steps.iter().rev() {
+            after = step.riccati(&after)?.cost;
+            ends.push(after.clone());
+        }
+        ends.reverse();
+        let point = |at: &feedback::Point, step: &RegulatedStep, end: &DMatrix<f64>| Point {
+            state: [&at.state[..step.places.nrows()], &momenta(&at.state)].concat(),
+            inputs: (law.inputs.iter().zip(&at.inputs))
+                .map(|(of, input)| of.acting(*input))
+                .collect(),
+            places: step.places.clone(),
+            end: end.clone(),
+            slope: step.lasting.as_ref().map(|[_, slope]| slope.clone()),
+        };
+        let motion = law.points.iter().zip(&of.steps).zip(&ends);
+        let mut points: Vec<Point> = motion
+            .map(|((at, step), end)| point(at, step, end))
+            .collect();
+        points.push(point(law.held.as_ref()?, held_step, &held.cost));
+        let costs = &held_step.costs.inputs;
+        Some(Self {
+            points,
+            rest: of.lasting.clone(),
+            inputs: costs.diagonal().iter().copied().collect(),
+        })
+    }
+
+    /// The motion at an instant, also behind its end.
+    pub(super) fn at(&self, k: usize) -> &Point {
+        &self.points[k.min(self.points.len() - 1)]
+    }
 }

@@ -104,9 +104,8 @@ impl<'h> Predicted<'h> {
         let slots = self.sent.len();
         let deviations = &mut self.sent[interval % slots];
         for (i, deviation) in deviations.iter_mut().enumerate() {
-            let (_, _, acting) = self.law.inputs[i].wanted(inputs[i], 0.0);
-            let (_, _, given) = self.law.inputs[i].wanted(given[i], 0.0);
-            *deviation = acting - given;
+            let of = &self.law.inputs[i];
+            *deviation = of.acting(inputs[i]) - of.acting(given[i]);
         }
     }
 
