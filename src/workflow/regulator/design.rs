@@ -77,7 +77,7 @@ pub(super) struct Design<'a> {
     pub(super) forced: Vec<[usize; 2]>,
     pub(super) h: f64,
     /// The state at rest that is held: at first the end of the optimum.
-    goal: State,
+    pub(super) goal: State,
     /// True if none is known.
     pub(super) is_restless: bool,
 }
@@ -172,11 +172,6 @@ impl<'a> Design<'a> {
             states.push(next.map_err(|error| NoRegulator::Step(error.to_string()))?);
         }
         Ok(states)
-    }
-
-    /// The state at rest that is held.
-    pub(super) fn goal(&self) -> &State {
-        &self.goal
     }
 
     /// Number of the short steps of an interval.
@@ -375,7 +370,7 @@ impl Design<'_> {
         linearisation: &mut Linearisation<'_>,
         inputs: &[f64],
     ) -> Option<State> {
-        let mut state = self.goal().clone();
+        let mut state = self.goal.clone();
         let sizes = self.model.sizes();
         if self.model.memory().next().is_none() {
             return Some(state);

@@ -70,7 +70,7 @@ impl Design<'_> {
         let held = self.rest.zip(at_goal.as_ref()).map(|(rest, step)| {
             let inputs = given(&self.model.scalars(rest));
             let gain = predicted((0..delay).map(|_| step), step);
-            self.point(self.goal(), &gain, inputs)
+            self.point(&self.goal, &gain, inputs)
         });
         Law {
             measured: coordinates.chain(rates).collect(),
@@ -95,7 +95,7 @@ impl Design<'_> {
 
     /// The correction some intervals behind the end of a motion that ends beside its goal, by the step that is held there.
     fn offset(&self, motion: &[State], behind: usize, held: &RegulatedStep) -> Vec<f64> {
-        let (end, goal) = (motion.last().expect("an instant"), self.goal());
+        let (end, goal) = (motion.last().expect("an instant"), &self.goal);
         let mut state = DVector::zeros(held.by_state.nrows());
         let places = state.iter_mut().zip(self.change([goal, end]));
         places.for_each(|(to, value)| *to = value);
@@ -109,7 +109,7 @@ impl Design<'_> {
     fn markers(&self, motion: &[State], is_held: bool) -> Vec<(String, Vec<[f64; 3]>)> {
         let map = &self.model.action.map;
         // The end is the goal, where that is held.
-        let goal = is_held.then(|| self.goal());
+        let goal = is_held.then_some(&self.goal);
         let motion = motion[..motion.len() - usize::from(is_held)].iter();
         let instants: Vec<_> = motion.chain(goal).map(|at| map.placed(&at.z)).collect();
         let moving = self.model.moving_markers().into_iter();

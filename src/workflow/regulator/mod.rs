@@ -121,7 +121,7 @@ impl Design<'_> {
         if self.is_restless {
             return Err("no state at rest near the end of the motion is known".to_owned());
         }
-        let goal = self.goal();
+        let goal = &self.goal;
         let step = self.linearised(linearisation, goal, &self.model.scalars(rest));
         let step = step.ok_or("the linearised step there has no result")?;
         let mut step = self.augmented(&step, goal);

@@ -44,7 +44,7 @@ impl Design<'_> {
         held: Option<&(RegulatedStep, HeldGain)>,
         forces: Option<DMatrix<f64>>,
     ) -> Result<(Observer, f64), NoRegulator> {
-        let goal = self.goal();
+        let goal = &self.goal;
         let readings = self.readings(observation)?;
         let scales = self.scales(observation, forces.as_ref());
         let end = match held {
@@ -99,7 +99,7 @@ impl Design<'_> {
 
     /// An observer that takes in the whole state as it is measured, and predicts it.
     pub(super) fn whole(&self, of: &Regulated, motion: &[State]) -> Observer {
-        let goal = self.goal();
+        let goal = &self.goal;
         let size = of.law.measured.len();
         let scales = Scales {
             state: DVector::from_element(size, 1.0),
@@ -145,7 +145,7 @@ impl Design<'_> {
             return Vec::new();
         }
         let end = self.measured(motion.last().expect("an instant"));
-        let goal = self.measured(self.goal());
+        let goal = self.measured(&self.goal);
         end.iter().zip(goal).map(|(end, goal)| end - goal).collect()
     }
 
