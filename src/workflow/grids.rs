@@ -12,9 +12,8 @@ use crate::workflow::accuracy::{
 use crate::workflow::attempt::Together;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, discrete_trajectory};
-use crate::workflow::optimise::{displaced, is_infeasible, is_unreached, optimise_task};
+use crate::workflow::optimise::{is_infeasible, is_unreached, optimise_task};
 use crate::workflow::optimum::{Budget, Optimum, SolveLimits};
-use crate::workflow::remark::phase;
 use std::ops::ControlFlow;
 
 /// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is set, as a part of the path length.
@@ -25,17 +24,16 @@ const AIMED: f64 = 0.7;
 const FACTORS: [f64; 2] = [1.25, 4.0];
 const UNKNOWN: f64 = 2.0;
 /// Limit of grids.
-const GRIDS: usize = 7;
-/// Multiples of the intervals of a single motion that are tried where it is not reproduced.
-const TIMES: [usize; 3] = [2, 4, 8];
+const GRIDS: u32 = 7;
+/// Doublings of the intervals of a motion that names them, where it is not reproduced.
+const DOUBLINGS: u32 = 3;
 /// Multiple of the intervals that is tried before a problem is called infeasible.
 const FINER: usize = 2;
-/// Greatest multiple of the intervals of one of several motions that names them.
-const MOST_TIMES: usize = 8;
 /// The solver's tolerance as a part of the accuracy asked for, where the problem names no smaller one.
 const SOLVER: f64 = 1e-2;
-/// The reason why no finer grid was tried, where time was up.
+/// Reasons why there are no motions on a finer grid.
 const STOPPED: &str = "it was stopped";
+const UNSOLVED: &str = "a finer grid was not solved";
 
 /// Options of a solve in addition to its problem.
 #[derive(Clone, Copy, Debug, Default)]
@@ -72,22 +70,27 @@ pub fn optimise_together(
     let are_given = task.motions.iter().all(|one| !one.control.is_refined);
     let mut solves = GridSolves {
         task: &task,
+        are_given,
         tolerance: f64::INFINITY,
         budget: Budget::new(limits),
         observer,
         iterations: 0,
     };
-    match (wanted, are_given) {
-        (Some(wanted), true) => solves.estimated(wanted),
-        (_, true) if task.motions.len() == 1 => solves.reproduced(),
-        (Some(AccuracyTarget::Below(part)), _) => solves.confirmed(part),
-        (_, _) => solves.confirmed(ACCURACY),
-    }
+    let accuracy = match wanted {
+        Some(wanted) if are_given => return solves.estimated(wanted),
+        Some(AccuracyTarget::Below(part)) => part,
+        Some(AccuracyTarget::Estimate) | None => ACCURACY,
+    };
+    let mut found = solves.refined(accuracy)?;
+    found.iterations = solves.iterations;
+    Ok(found)
 }
 
 /// The solves so far.
 struct GridSolves<'a, 'o> {
     task: &'a ControlTask<'a>,
+    /// True if all motions name their intervals.
+    are_given: bool,
     /// Greatest tolerance of the solver.
     tolerance: f64,
     budget: Budget,
@@ -103,8 +106,12 @@ impl GridSolves<'_, '_> {
         motions.map(|one| factor * one.control.intervals).collect()
     }
 
-    /// The problems with these intervals.
-    fn on(&self, intervals: &[usize]) -> Vec<Control> {
+    /// Solves on grids with these intervals, from earlier motions or from the guesses.
+    fn solve(
+        &mut self,
+        intervals: &[usize],
+        earlier: Option<&Together>,
+    ) -> Result<Together, WorkflowError> {
         let motions = self.task.motions.iter().zip(intervals);
         let controls = motions.map(|(one, &intervals)| {
             let mut control = one.control.clone();
@@ -112,158 +119,90 @@ impl GridSolves<'_, '_> {
             control.solver.tolerance = control.solver.tolerance.min(self.tolerance);
             control
         });
-        controls.collect()
-    }
-
-    /// Solves on grids with these intervals, from earlier motions or from the guesses.
-    fn solve(
-        &mut self,
-        intervals: &[usize],
-        earlier: Option<&Together>,
-    ) -> Result<Together, WorkflowError> {
-        self.solve_problems(&self.on(intervals), earlier)
-    }
-
-    fn solve_problems(
-        &mut self,
-        controls: &[Control],
-        earlier: Option<&Together>,
-    ) -> Result<Together, WorkflowError> {
+        let controls: Vec<Control> = controls.collect();
         let limits = self.budget.left_of_limits();
-        let mut task = self.task.with(controls);
+        let mut task = self.task.with(&controls);
         for (k, motion) in task.motions.iter_mut().enumerate() {
             motion.earlier = earlier.map(|found| &found.optima[k].motion);
         }
-        let intervals = controls.iter().map(|control| control.intervals).sum();
+        let intervals = intervals.iter().sum();
         let observer = &mut self.observer;
         let found = optimise_task(&task, limits, &mut |iterate| observer(intervals, iterate))?;
         self.iterations += iterations(&found);
         Ok(found)
     }
 
-    /// Solves on the own grids; several motions from displaced guesses too, where that leads nowhere.
-    fn first(&mut self) -> Result<Together, WorkflowError> {
-        let controls = self.on(&self.times(1));
-        let found = self.solve_problems(&controls, None)?;
-        let is_unreached = controls.len() > 1 && is_unreached(&found.optima[0].solution);
-        if !is_unreached || self.budget.is_over() {
+    /// Solves on the own grids, then on finer ones of the motions whose verification does not confirm the `accuracy` (where their intervals are not
+    /// given) or fails; the finest stays. Where all intervals are given and no grid has motions that are reproduced, the first stays.
+    fn refined(&mut self, accuracy: f64) -> Result<Together, WorkflowError> {
+        let first = self.solve(&self.times(1), None)?;
+        if let Some(found) = self.feasible(&first) {
             return Ok(found);
         }
-        phase("second, displaced initial guesses");
-        let each = controls.iter().zip(&found.optima);
-        let displaced: Vec<Control> = each
-            .map(|(control, first)| displaced(control, first))
-            .collect();
-        let second = self.solve_problems(&displaced, None);
-        let second = second.ok().filter(Together::meets_equations);
-        Ok(second.unwrap_or(found))
-    }
-
-    /// The end of the solves.
-    fn end(&self, found: Together) -> Together {
-        Together {
-            iterations: self.iterations,
-            ..found
-        }
-    }
-
-    /// Solves for a single motion on its own grid; where the optimum is not reproduced, on finer ones, each from the optimum before, then from the
-    /// guess of the problem. Where none is, the first one stays.
-    fn reproduced(&mut self) -> Result<Together, WorkflowError> {
-        let mut first = self.first()?;
-        let optimum = &first.optima[0];
-        let (own, size) = (optimum.motion.intervals(), optimum.solution.x.len());
-        // Intervals that do not resolve the motion may leave none.
-        let is_open = is_infeasible(optimum.solution.status) && !self.budget.is_over();
-        if is_open
-            && FINER * size <= VARIABLES
-            && let Ok(mut found) = self.solve(&self.times(FINER), None)
-            && found.is_solved()
-        {
-            let finer = FINER * own;
-            let note = format!(
-                "on {own} intervals no motion keeps goal and limits; on {finer} intervals this one does"
-            );
-            found.optima[0].refined = Some(note);
-            return Ok(self.end(found));
-        }
-        let Some(cause) = optimum.cause() else {
-            return Ok(self.end(first));
-        };
-        let of_problem = format!("on {own} intervals: {}", cause.message());
-        let mut before = None;
-        let mut finest = None;
-        'grids: for times in TIMES {
-            for from_before in [true, false] {
-                if self.budget.is_over() || times * size > VARIABLES {
-                    break 'grids;
-                }
-                let earlier = from_before.then(|| before.as_ref().unwrap_or(&first));
-                let Ok(mut found) = self.solve(&self.times(times), earlier) else {
-                    break 'grids;
-                };
-                let n = own * times;
-                finest = Some(n);
-                if found.is_solved() {
-                    found.carry(&first);
-                    found.optima[0].refined = Some(reproduced_on(&of_problem, n));
-                    return Ok(self.end(found));
-                }
-                if found.optima[0].solution.status.is_solved() {
-                    before = Some(found);
-                }
-            }
-        }
-        first.optima[0].stopped = self.budget.stopped();
-        first.optima[0].refined = finest.map(not_reproduced);
-        Ok(self.end(first))
-    }
-
-    /// Solves on the own grids, then on finer ones of the motions whose verification does not confirm the `accuracy` (where their intervals are not
-    /// given) or fails; the finest stays.
-    fn confirmed(&mut self, accuracy: f64) -> Result<Together, WorkflowError> {
-        let mut found = self.first()?;
-        let mut of_problems = vec![None; found.optima.len()];
-        let mut why = None;
-        for _ in 1..GRIDS {
-            let finer = self.finer(&found.optima, accuracy);
-            let Some(intervals) = finer.filter(|_| found.meets_equations()) else {
+        let count = first.optima.len();
+        let (mut of_problems, mut tried, mut why) = (vec![None; count], None, None);
+        let mut finest: Option<Together> = None;
+        for grid in 1..GRIDS {
+            let before = finest.as_ref().unwrap_or(&first);
+            let finer = self.finer(&before.optima, accuracy, grid);
+            let Some(intervals) = finer.filter(|_| before.meets_equations()) else {
                 break;
             };
-            let next = match self.refine(&found, &intervals) {
-                Ok(next) => next,
-                Err(reason) => {
-                    why = Some(reason);
-                    break;
-                }
-            };
-            let each = self.task.motions.iter().zip(&found.optima);
+            let each = self.task.motions.iter().zip(&before.optima);
             for ((motion, old), note) in each.zip(&mut of_problems) {
                 let cause = old.cause().filter(|_| !motion.control.is_refined);
                 let n = old.motion.intervals();
                 let told = || cause.map(|cause| format!("on {n} intervals: {}", cause.message()));
                 *note = note.take().or_else(told);
             }
-            found = next;
+            match self.refine(before, &intervals) {
+                Ok(next) => finest = Some(next),
+                Err(UNSOLVED) if self.are_given => {}
+                Err(reason) => {
+                    why = Some(reason);
+                    break;
+                }
+            }
+            tried = Some(intervals);
         }
-        let (stopped, are_several) = (self.budget.stopped(), found.optima.len() > 1);
+        let stays = |found: &Together| !self.are_given || found.is_solved();
+        let mut found = finest.filter(stays).unwrap_or(first);
+        let stopped = self.budget.stopped();
         let motions = self.task.motions.iter().zip(&mut found.optima);
-        for ((motion, optimum), of_problem) in motions.zip(of_problems) {
+        for (number, ((motion, optimum), of_problem)) in motions.zip(of_problems).enumerate() {
             // What the solver found, or what several motions did not reach, might have been tried again.
-            let is_open =
-                optimum.meets_equations() || are_several && is_unreached(&optimum.solution);
+            let is_open = optimum.meets_equations() || count > 1 && is_unreached(&optimum.solution);
             if is_open && !optimum.is_solved() {
                 optimum.stopped = stopped;
             }
             let is_short = motion.control.is_refined && !is_confirmed(optimum, accuracy);
             let n = optimum.motion.intervals();
+            let finest = tried.as_ref().map(|all: &Vec<usize>| all[number]);
             optimum.refined = match of_problem {
                 _ if is_short && optimum.meets_equations() => Some(unconfirmed(n, accuracy, why)),
-                Some(_) if !optimum.is_solved() => Some(not_reproduced(n)),
+                Some(_) if !optimum.is_solved() => finest.map(not_reproduced),
                 of_problem => of_problem.map(|of_problem| reproduced_on(&of_problem, n)),
             };
         }
-        Ok(self.end(found))
+        Ok(found)
+    }
+
+    /// Motions with twice the intervals that are given, where the own ones leave none: they may not resolve the motion.
+    fn feasible(&mut self, first: &Together) -> Option<Together> {
+        let is_open = self.are_given && is_infeasible(first.optima[0].solution.status);
+        if !is_open || self.budget.is_over() || FINER * first.whole.variables > VARIABLES {
+            return None;
+        }
+        let found = self.solve(&self.times(FINER), None).ok();
+        let mut found = found.filter(Together::is_solved)?;
+        for optimum in &mut found.optima {
+            let finer = optimum.motion.intervals();
+            let own = finer / FINER;
+            optimum.refined = Some(format!(
+                "on {own} intervals no motion keeps goal and limits; on {finer} intervals this one does"
+            ));
+        }
+        Some(found)
     }
 
     /// Solves on finer grids, from the motions before, then from the guesses; the reason where that is not done.
@@ -277,29 +216,34 @@ impl GridSolves<'_, '_> {
         if variables > VARIABLES as f64 {
             return Err("a finer grid is too large");
         }
-        let is_found = |found: &Together| found.meets_equations();
-        let mut next = self.solve(intervals, Some(before)).ok().filter(is_found);
-        if next.is_none() && !self.budget.is_over() {
-            next = self.solve(intervals, None).ok().filter(is_found);
+        let mut next: Option<Together> = None;
+        for earlier in [Some(before), None] {
+            let is_enough = |next: &Together| !self.are_given || next.is_solved();
+            if self.budget.is_over() || next.as_ref().is_some_and(is_enough) {
+                break;
+            }
+            let found = self.solve(intervals, earlier).ok();
+            next = found.filter(Together::meets_equations).or(next);
         }
         let mut next = next.ok_or_else(|| match self.budget.is_over() {
             true => STOPPED,
-            false => "a finer grid was not solved",
+            false => UNSOLVED,
         })?;
         next.carry(before);
         Ok(next)
     }
 
-    /// Intervals of the next grids; none where each verification is passed, or no finer grid is tried. Where inputs are shared all grids stay equal.
-    fn finer(&self, optima: &[Optimum], accuracy: f64) -> Option<Vec<usize>> {
+    /// Intervals of the next grids, the first of which has number 1; none where each verification is passed, or no finer grid is tried. Where inputs are
+    /// shared all grids stay equal.
+    fn finer(&self, optima: &[Optimum], accuracy: f64, grid: u32) -> Option<Vec<usize>> {
         let each = self.task.motions.iter().zip(optima);
         let next = each.map(|(motion, optimum)| {
             let n = optimum.motion.intervals();
             match motion.control.is_refined {
                 true if is_confirmed(optimum, accuracy) => n,
                 true => (n as f64 * factor(optimum, accuracy)).ceil() as usize,
-                false if optimum.is_solved() => n,
-                false => (2 * n).min(MOST_TIMES * motion.control.intervals),
+                false if optimum.is_solved() || grid > DOUBLINGS => n,
+                false => motion.control.intervals << grid,
             }
         });
         let mut next: Vec<usize> = next.collect();
@@ -321,10 +265,7 @@ impl GridSolves<'_, '_> {
         let budget = self.budget;
         let stop = || budget.stopped().map(Status::word);
         let refined = refine(wanted, OF_CONTROL, stop, |times, before| {
-            let mut found = match before {
-                Some(_) => self.solve(&self.times(times), before),
-                None => self.first(),
-            }?;
+            let mut found = self.solve(&self.times(times), before)?;
             // What the guess of the problem became belongs to all grids.
             before.iter().for_each(|before| found.carry(before));
             Ok(self.compared(found))

@@ -38,7 +38,7 @@ pub fn optimise(
     Ok(found.optima.remove(0))
 }
 
-/// Solves a task; a single motion from other starts too, where its own one leads nowhere.
+/// Solves a task; where its own start leads nowhere a single motion from others too, and several from displaced guesses.
 pub(super) fn optimise_task(
     task: &ControlTask<'_>,
     allowed: SolveLimits,
@@ -46,9 +46,10 @@ pub(super) fn optimise_task(
 ) -> Result<Together, WorkflowError> {
     let budget = Budget::new(allowed);
     let mut found = attempt(task, allowed, observer)?;
-    if let [motion] = task.motions[..]
-        && is_unreached(&found.optima[0].solution)
-    {
+    if !is_unreached(&found.optima[0].solution) {
+        return Ok(found);
+    }
+    if let [motion] = task.motions[..] {
         let starts = SecondStarts {
             motion,
             budget,
@@ -56,6 +57,25 @@ pub(super) fn optimise_task(
             found: found.optima.remove(0),
         };
         found.optima.push(starts.solve());
+    } else if task.motions[0].earlier.is_none() && !budget.is_over() {
+        phase("second, displaced initial guesses");
+        let each = task.motions.iter().zip(&found.optima);
+        let each = each.map(|(motion, first)| displaced(motion.control, first));
+        let controls: Vec<Control> = each.collect();
+        let second = attempt(&task.with(&controls), budget.left_of_limits(), observer);
+        let Ok(mut second) = second else {
+            return Ok(found);
+        };
+        let is_better = second.meets_equations();
+        for (new, old) in second.optima.iter_mut().zip(&mut found.optima) {
+            match is_better {
+                true => put_before(&mut new.solution, &old.solution),
+                false => put_after(&mut old.solution, &new.solution),
+            }
+        }
+        if is_better {
+            return Ok(second);
+        }
     }
     Ok(found)
 }
@@ -392,7 +412,7 @@ pub(crate) fn is_unreached(solution: &SolverResult) -> bool {
 
 /// The problem with another guess: the motion under the voltages of the goal, or half of the largest ones; interpolated where it
 /// was simulated.
-pub(crate) fn displaced(control: &Control, first: &Optimum) -> Control {
+fn displaced(control: &Control, first: &Optimum) -> Control {
     let [low, high] = control.voltage_bounds;
     let guess = match (&control.guess, &first.boundary.rest[1]) {
         (Guess::Simulate(_), _) => Guess::Interpolate,
