@@ -66,7 +66,8 @@ fn motions(problem: &str, changes: &[&str]) -> Motions {
 
 fn solved(motions: &Motions) -> MotionsResult {
     let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
-    let found = solve_motions(motions, SolveRequest::default(), go_on).expect("a right problem");
+    let found =
+        solve_motions(&motions.task(), SolveRequest::default(), go_on).expect("a right problem");
     assert!(found.verdict.is_solved, "{:?}", found.verdict);
     found
 }

@@ -1,17 +1,15 @@
-//! Several motions from file to folder: each in a folder of its own within that of the results, and what they have in common, once.
+//! Several motions in the folder of their results: what they have in common, beside the folder of each.
 
 use crate::app::error::CommandError;
 use crate::app::fields::FOLDER;
-use crate::app::kept::overwrite_check::{make_folder, make_folder_of};
+use crate::app::kept::overwrite_check::make_folder;
 use crate::app::kept::partial_result::{EARLIER, STOPPED};
-use crate::app::kept::{solution_file, unfinished};
-use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted, counted};
-use crate::app::solve::{Solved, add_notes};
 use crate::app::solve_summary::{describe, gap, outcome_word, parameter, parameter_note};
 use crate::app::summary::{Summary, versions};
-use crate::control::{Motions, PEAK_VOLTAGE};
-use crate::files::{Entries, Loaded};
+use crate::control::PEAK_VOLTAGE;
+use crate::control::problem::ControlTask;
+use crate::files::Entries;
 use crate::math::significant;
 use crate::model::FoundParameter;
 use crate::report::atomic;
@@ -19,87 +17,29 @@ use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::page::compared;
 use crate::report::paraview::remove_from;
-use crate::tasks::{MotionsResult, solve_motions};
+use crate::tasks::MotionsResult;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Solves for several motions and writes their folders, solved or not.
-pub(super) fn motions(
-    request: &CommandInput,
-    loaded: &Loaded,
-    motions: &Motions,
-    began: Instant,
-    observer: &mut dyn FnMut(Reached<'_>),
-) -> Result<CommandOutput, CommandError> {
-    let read = began.elapsed().as_secs_f64();
-    let results = request.folder();
-    let (result, folder) = unfinished::solve(
-        request,
-        read,
-        observer,
-        |_, models, found| {
-            let mut each = motions.list.iter().zip(models).enumerate();
-            each.try_for_each(|(number, (motion, model))| {
-                let own = results.join(&motion.name);
-                make_folder(&own)?;
-                solution_file::replace(&own.join(solution_file::UNFINISHED), model, &found(number))
-            })
-        },
-        |asked, observe| solve_motions(motions, asked, observe),
-    )?;
-    let mut each = Vec::new();
-    for (motion, one) in motions.list.iter().zip(&result.list) {
-        let own = CommandInput {
-            output: Some(folder.join(&motion.name)),
-            ..request.clone()
-        };
-        let folder = make_folder_of(&own)?;
-        let solved = Solved {
-            request: &own,
-            loaded,
-            system: &motion.system,
-            control: &motion.control,
-            feedback: None,
-            result: one,
-        };
-        each.push(solved.write(&folder, read, began)?);
-        unfinished::done(&folder);
-    }
-    let stopped = each.iter().find(|one| STOPPED.contains(&&*one.status));
-    let together = Together {
-        request,
-        motions,
-        result: &result,
-        each: &each,
-        // Of the results of a motion not all was written.
-        status: stopped.map_or(result.verdict.word, |one| &one.status),
-        folder: &folder,
-    };
-    let seconds = together.write(began)?;
-    let mut output = together.command_output(seconds);
-    add_notes(&mut output, request, loaded, together.status);
-    Ok(output)
-}
-
 /// The part that all motions have in common, with their summaries in the order of the motions.
-struct Together<'a> {
-    request: &'a CommandInput,
-    motions: &'a Motions,
-    result: &'a MotionsResult,
-    each: &'a [Summary],
+pub(super) struct Together<'a> {
+    pub(super) request: &'a CommandInput,
+    pub(super) task: &'a ControlTask<'a>,
+    pub(super) result: &'a MotionsResult,
+    pub(super) each: &'a [Summary],
     /// `solved`, where each motion is, or the word of the first that is not.
-    status: &'a str,
-    folder: &'a Path,
+    pub(super) status: &'a str,
+    pub(super) folder: &'a Path,
 }
 
 impl Together<'_> {
-    /// Writes the page of all side by side, and the summary last; returns the seconds so far.
-    fn write(&self, began: Instant) -> Result<f64, CommandError> {
+    /// Writes the page of all side by side, and the summary last; returns the answer of the command.
+    pub(super) fn write(&self, began: Instant) -> Result<CommandOutput, CommandError> {
         let mut files = FileSet::in_folder(self.folder);
         EARLIER.iter().for_each(|name| files.remove(name));
         remove_from(0, FOLDER, &mut files);
-        let names = || self.motions.list.iter().map(|motion| &motion.name);
+        let names = || self.task.motions.iter().map(|motion| motion.name);
         let folders: Vec<PathBuf> = names().map(|name| self.folder.join(name)).collect();
         let is_written = |folder: &PathBuf| folder.join(SIDE_BY_SIDE).is_file();
         if self.request.page == PageWanted::Written && folders.iter().all(is_written) {
@@ -112,7 +52,7 @@ impl Together<'_> {
         let seconds = began.elapsed().as_secs_f64();
         files.add("summary.json", self.summary(seconds).laid_out().as_bytes())?;
         files.finish()?;
-        Ok(seconds)
+        Ok(self.command_output(seconds))
     }
 
     /// Constants that were sought.
@@ -132,8 +72,8 @@ impl Together<'_> {
             ..
         } = self.result;
         let mut units: Vec<String> = Vec::new();
-        let each = self.motions.list.iter();
-        for unit in each.flat_map(|one| one.control.objective_units(&one.system)) {
+        let each = self.task.motions.iter();
+        for unit in each.flat_map(|one| one.control.objective_units(one.system)) {
             if !units.contains(&unit) {
                 units.push(unit);
             }
@@ -159,7 +99,7 @@ impl Together<'_> {
                 infeasibility.fold(0.0, |worst, one| one.max(worst)),
             )
             .with_any("parameters", self.parameters().map(parameter))
-            .with_any("shared_inputs", &self.motions.shared_inputs)
+            .with_any("shared_inputs", self.task.shared_inputs)
             .with_some("gap", gap(whole.gap, verdict))
             // The greatest errors of all motions.
             .with_some("accuracy", accuracy.as_ref())
@@ -170,7 +110,7 @@ impl Together<'_> {
 
     /// A motion in the summary of all.
     fn motion(&self, number: usize) -> Entries {
-        let name = &self.motions.list[number].name;
+        let name = self.task.motions[number].name;
         let optimum = &self.result.list[number].optimum;
         let intervals = optimum.motion.intervals();
         let weights = self.result.whole.weights.as_ref();
@@ -210,7 +150,7 @@ impl Together<'_> {
             result: format!(
                 "{word}: objective {}, {}, {}, {seconds:.2} s, {}",
                 significant(whole.objective, 8),
-                counted(self.motions.list.len(), "motion"),
+                counted(self.each.len(), "motion"),
                 counted(self.result.iterations, "iteration"),
                 self.folder.display()
             ),
@@ -234,7 +174,7 @@ impl Together<'_> {
                 .count()
         };
         let (mut notes, mut others) = (Vec::new(), Vec::new());
-        for (number, (motion, list)) in self.motions.list.iter().zip(&lists).enumerate() {
+        for (number, (motion, list)) in self.task.motions.iter().zip(&lists).enumerate() {
             for note in list {
                 match times(note) >= lists.len() {
                     true if number == 0 => notes.push(note.clone()),

@@ -4,7 +4,7 @@
 use crate::app::error::CommandError;
 use crate::app::request::{CommandInput, CommandOutput, key};
 use crate::app::task::read;
-use crate::control::problem::{Ahead, ControlTask, MotionTask, Task};
+use crate::control::problem::{Ahead, ControlTask, Task};
 use crate::feedback::{Measured, Reading};
 use crate::files::feedback::{factor_of, unit_of};
 use crate::model::System;
@@ -65,16 +65,9 @@ pub fn with_program<R>(
     read_program: impl FnOnce(&mut dyn Nlp, &[f64]) -> R,
 ) -> Result<R, CommandError> {
     let loaded = read(input, Some(text), &[])?;
-    let task = match &loaded.task {
-        Task::Control(control) => MotionTask::alone(&loaded.system, control).into(),
-        Task::Motions(motions) => motions.task(),
-        Task::Simulate(_) | Task::Equilibrium(_) | Task::Identify(_) => {
-            return Err(CommandError::problem(
-                input,
-                key(&loaded.task),
-                "only \"control\" is a nonlinear program",
-            ));
-        }
+    let Some(task) = loaded.task.motions(&loaded.system) else {
+        let reason = "only \"control\" is a nonlinear program";
+        return Err(CommandError::problem(input, key(&loaded.task), reason));
     };
     joined(input, &task, read_program)
 }

@@ -1,14 +1,15 @@
 //! A control problem from file to folder: solved, re-simulated, and reported.
 
 use std::ops::ControlFlow;
-use std::path::Path;
 use std::time::Instant;
 
 use crate::app::blocks::{self, EnergySummary};
 use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::error::CommandError;
-use crate::app::kept::partial_result::{leave_out, time_to_write};
+use crate::app::kept::overwrite_check::{folder_within, make_folder_of};
+use crate::app::kept::partial_result::{STOPPED, leave_out, time_to_write};
 use crate::app::kept::{resume_file, solution_file, unfinished};
+use crate::app::motions::Together;
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::solve_summary::{
@@ -26,7 +27,7 @@ use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::{Run, sensitivities, write_run};
 use crate::stop;
-use crate::tasks::{self, SolveResult};
+use crate::tasks::SolveResult;
 use crate::workflow::effects::Plan;
 use crate::workflow::optimum::Optimum;
 use crate::workflow::resimulate::constant;
@@ -36,70 +37,78 @@ const COMPARED: usize = 3;
 /// Statuses of a solve that might have gone on.
 const MIGHT_GO_ON: [&str; 3] = ["interrupted", "time_limit", "iteration_limit"];
 
-/// Solves a control problem and writes its folder, solved or not.
+/// Solves a control problem and writes its folder, solved or not; of several motions each has a folder of its own within it.
 pub(super) fn control(
     request: &CommandInput,
     loaded: &Loaded,
-    control: &Control,
     began: Instant,
     observer: &mut dyn FnMut(Reached<'_>),
 ) -> Result<CommandOutput, CommandError> {
     let read = began.elapsed().as_secs_f64();
-    let system = &loaded.system;
-    let (result, folder) = unfinished::solve(
-        request,
-        read,
-        observer,
-        |path, models, found| solution_file::replace(path, models[0], &found(0)),
-        |asked, observe| tasks::solve(system, control, asked, observe),
-    )?;
-    let solved = Solved {
-        request,
-        loaded,
-        system,
-        control,
-        feedback: loaded.feedback.as_ref(),
-        result: &result,
+    let task = loaded.task.motions(&loaded.system);
+    let task = task.expect("a problem of control has motions");
+    let (result, folder) = unfinished::solve(request, &task, read, observer)?;
+    let mut each = Vec::new();
+    for (motion, one) in task.motions.iter().zip(&result.list) {
+        let own = folder_within(&folder, motion.name);
+        let own = CommandInput {
+            output: Some(own),
+            ..request.clone()
+        };
+        if !motion.is_alone() {
+            make_folder_of(&own)?;
+        }
+        let solved = Solved {
+            request: &own,
+            loaded,
+            system: motion.system,
+            control: motion.control,
+            feedback: loaded.feedback.as_ref(),
+            result: one,
+        };
+        each.push(solved.write(read, began)?);
+        unfinished::done(&own.folder());
+    }
+    let stopped = each.iter().find(|one| STOPPED.contains(&&*one.status));
+    // Of the results of a motion not all was written.
+    let status = stopped.map_or(result.verdict.word, |one| &one.status);
+    let mut output = match (&task.motions[..], &each[..]) {
+        ([motion], [summary]) if motion.is_alone() => {
+            command_output(summary, motion.control, &result.list[0], &folder)
+        }
+        _ => {
+            let together = Together {
+                request,
+                task: &task,
+                result: &result,
+                each: &each,
+                status,
+                folder: &folder,
+            };
+            together.write(began)?
+        }
     };
-    let summary = solved.write(&folder, read, began)?;
-    unfinished::done(&folder);
-    let mut output = command_output(&summary, control, &result, &folder);
-    add_notes(&mut output, request, loaded, &summary.status);
-    Ok(output)
-}
-
-/// Adds the notes of the reading and, where the solve might have gone on, the command that resumes it.
-pub(super) fn add_notes(
-    output: &mut CommandOutput,
-    request: &CommandInput,
-    loaded: &Loaded,
-    status: &str,
-) {
     output.notes.extend(loaded.note_lines());
     if MIGHT_GO_ON.contains(&status) {
         let command = resume_file::command(request, &loaded.task);
         output.notes.extend(command);
     }
+    Ok(output)
 }
 
 /// A motion of a problem, solved or not, with the feedback along it.
-pub(super) struct Solved<'a> {
-    pub(super) request: &'a CommandInput,
-    pub(super) loaded: &'a Loaded,
-    pub(super) system: &'a System,
-    pub(super) control: &'a Control,
-    pub(super) feedback: Option<&'a Regulator>,
-    pub(super) result: &'a SolveResult,
+struct Solved<'a> {
+    request: &'a CommandInput,
+    loaded: &'a Loaded,
+    system: &'a System,
+    control: &'a Control,
+    feedback: Option<&'a Regulator>,
+    result: &'a SolveResult,
 }
 
 impl Solved<'_> {
-    /// Writes the files of a result to a folder that exists, and its summary; `read` are the seconds before the solve.
-    pub(super) fn write(
-        &self,
-        folder: &Path,
-        read: f64,
-        began: Instant,
-    ) -> Result<Summary, CommandError> {
+    /// Writes the files of a result to its folder, which exists, and its summary; `read` are the seconds before the solve.
+    fn write(&self, read: f64, began: Instant) -> Result<Summary, CommandError> {
         let (control, result) = (self.control, self.result);
         let SolveResult {
             optimum, verdict, ..
@@ -114,7 +123,7 @@ impl Solved<'_> {
         summary.seconds = seconds(optimum, read, began);
         add_observed(&mut summary, result);
         let writing = Instant::now();
-        let mut files = FileSet::in_folder(folder);
+        let mut files = FileSet::in_folder(&self.request.folder());
         solution_file::add(&mut files, &optimum.model, &optimum.motion)?;
         let (limit, kept) = (time_to_write(self.request, began), files.count());
         files.limit(&limit);

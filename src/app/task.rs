@@ -4,12 +4,12 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::app::error::CommandError;
-use crate::app::kept::overwrite_check::refuse_foreign;
+use crate::app::kept::overwrite_check::{folder_within, refuse_foreign};
 use crate::app::kept::resume_file;
 use crate::app::no_equilibrium::refuse_all_but_motions;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::{equilibrium, identification, motions, no_equilibrium, simulation, solve};
+use crate::app::{equilibrium, identification, no_equilibrium, simulation, solve};
 use crate::control::problem::{BoundaryState, Guess, Task};
 use crate::control::{Earlier, Motions};
 use crate::files::solution::SolutionFile;
@@ -56,29 +56,18 @@ fn run_checked(
     let began = Instant::now();
     let _progress = Progress::of_solve(request.progress);
     phase("reading");
-    let loaded = read(&request.input, text, &request.set)?;
+    let mut loaded = read(&request.input, text, &request.set)?;
     check(request, &loaded.task)?;
     refuse_unused(request, &loaded.task)?;
-    refuse_replacing(request, &loaded.task)?;
+    refuse_replacing(request, &loaded)?;
+    for (name, control) in loaded.task.controls_mut() {
+        if let Some(folder) = &request.from {
+            let file = SolutionFile(resume_file::solution(&folder_within(folder, name))?);
+            control.guess = Guess::Solution(Earlier::new(file));
+        }
+    }
     let answer = match &loaded.task {
-        Task::Control(control) => {
-            let mut control = control.clone();
-            if let Some(folder) = &request.from {
-                let file = SolutionFile(resume_file::solution(folder)?);
-                control.guess = Guess::Solution(Earlier::new(file));
-            }
-            solve::control(request, &loaded, &control, began, observer)
-        }
-        Task::Motions(asked) => {
-            let mut asked = asked.clone();
-            for motion in asked.list.iter_mut() {
-                if let Some(folder) = &request.from {
-                    let file = SolutionFile(resume_file::solution(&folder.join(&motion.name))?);
-                    motion.control.guess = Guess::Solution(Earlier::new(file));
-                }
-            }
-            motions::motions(request, &loaded, &asked, began, observer)
-        }
+        Task::Control(_) | Task::Motions(_) => solve::control(request, &loaded, began, observer),
         Task::Simulate(simulation) => {
             simulation::simulation(request, &loaded, simulation, began, observer)
         }
@@ -115,23 +104,25 @@ fn occasion(task: &Task) -> Occasion {
 }
 
 /// Refuses results in the place of those of another problem, or of the one from whose end the motion starts.
-pub(super) fn refuse_replacing(request: &CommandInput, task: &Task) -> Result<(), CommandError> {
+pub(super) fn refuse_replacing(
+    request: &CommandInput,
+    loaded: &Loaded,
+) -> Result<(), CommandError> {
     refuse_foreign(request)?;
     let own = request.folder();
-    match task {
-        Task::Control(control) => refuse_end(request, "control", &control.start, &own),
-        Task::Simulate(task) => refuse_end(request, "simulate", &task.start, &own),
-        Task::Motions(motions) => motions.list.iter().try_for_each(|motion| {
-            let place = format!("control.motions.{}", motion.name);
-            refuse_end(
-                request,
-                &place,
-                &motion.control.start,
-                &own.join(&motion.name),
-            )
-        }),
-        Task::Equilibrium(_) | Task::Identify(_) => Ok(()),
+    if let Task::Simulate(task) = &loaded.task {
+        return refuse_end(request, "simulate", &task.start, &own);
     }
+    let task = loaded.task.motions(&loaded.system);
+    let mut each = task.iter().flat_map(|task| &task.motions);
+    each.try_for_each(|motion| {
+        let place = match motion.name {
+            "" => "control".to_owned(),
+            name => format!("control.motions.{name}"),
+        };
+        let own = folder_within(&own, motion.name);
+        refuse_end(request, &place, &motion.control.start, &own)
+    })
 }
 
 /// Refuses results in the `own` folder where that is the one from whose end the motion starts.

@@ -43,6 +43,29 @@ pub enum Task {
     Identify(Box<Identification>),
 }
 
+impl Task {
+    /// The motions of a control problem, of which a single one has no name; none of another task.
+    pub fn motions<'a>(&'a self, system: &'a System) -> Option<ControlTask<'a>> {
+        match self {
+            Self::Control(control) => Some(MotionTask::alone(system, control).into()),
+            Self::Motions(motions) => Some(motions.task()),
+            Self::Simulate(_) | Self::Equilibrium(_) | Self::Identify(_) => None,
+        }
+    }
+
+    /// The problems of these motions, with their names.
+    pub fn controls_mut(&mut self) -> Vec<(&str, &mut Control)> {
+        match self {
+            Self::Control(control) => vec![("", &mut **control)],
+            Self::Motions(motions) => {
+                let all = motions.list.iter_mut();
+                all.map(|one| (&*one.name, &mut one.control)).collect()
+            }
+            Self::Simulate(_) | Self::Equilibrium(_) | Self::Identify(_) => Vec::new(),
+        }
+    }
+}
+
 /// A static equilibrium, or the path of equilibria that leads there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AtRest {
@@ -279,6 +302,11 @@ pub struct MotionTask<'a> {
 }
 
 impl<'a> MotionTask<'a> {
+    /// Returns true of a motion that has no name, as there is no other.
+    pub fn is_alone(&self) -> bool {
+        self.name.is_empty()
+    }
+
     /// A motion that has no name, as there is no other.
     pub fn alone(system: &'a System, control: &'a Control) -> Self {
         Self {

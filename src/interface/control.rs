@@ -320,7 +320,7 @@ impl<'a> Together<'a> {
             combined: self.combined,
         };
         let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
-        let found = tasks::solve_motions(&motions, SolveRequest::default(), go_on)?;
+        let found = tasks::solve_motions(&motions.task(), SolveRequest::default(), go_on)?;
         Ok(found.list.into_iter().map(Optimum::from_result).collect())
     }
 }

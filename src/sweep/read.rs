@@ -98,7 +98,7 @@ pub(super) fn read_sweep(path: &Path) -> Result<Sweep, SceneError> {
                     let found = each_entry_once(&changes.words, &loaded);
                     found.map_err(|error| changes.at_fault(error, &problem))?;
                 }
-                run_at_once &= task_runs_at_once(&loaded.task);
+                run_at_once &= task_runs_at_once(&loaded);
                 (identity(&loaded, &CommandInput::default()), None)
             }
             Err(error) => {

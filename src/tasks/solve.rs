@@ -1,7 +1,7 @@
 //! Control problems: solved, verified by simulations, and held after their end; of several motions together too.
 
 use crate::control::problem::{Control, ControlTask, Guess, MotionTask, SoughtHold};
-use crate::control::{Earlier, Motions, hold_obstacle};
+use crate::control::{Earlier, hold_obstacle};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range};
 use crate::model::System;
@@ -72,19 +72,16 @@ pub fn solve(
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<SolveResult, WorkflowError> {
     let task = MotionTask::alone(system, control).into();
-    let mut all = solve_task(&task, request, observer)?;
-    let mut result = all.list.remove(0);
-    result.accuracy = all.accuracy;
-    let cut_short = result.optimum.cut_short.map(solve_messages::cut_short);
-    result.remarks.warn(STOPPED_EARLY, cut_short);
-    Ok(result)
+    let mut all = solve_motions(&task, request, observer)?;
+    Ok(all.list.remove(0))
 }
 
-/// Solves a task of one motion or several.
+/// Solves for motions as one program, of which a single one is a case; each is verified, refined and held as one by itself. `observer` sees the number
+/// of all intervals and every iterate.
 ///
 /// # Errors
 /// As of [`solve`].
-fn solve_task(
+pub fn solve_motions(
     task: &ControlTask<'_>,
     request: SolveRequest,
     observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
@@ -102,14 +99,20 @@ fn solve_task(
     let iterations = found.iterations;
     let list = each
         .map(|((motion, control), optimum)| assessed(motion.system, control, optimum, iterations));
-    let list: Vec<SolveResult> = list.collect();
+    let mut list: Vec<SolveResult> = list.collect();
     let whole = found.whole;
     let mut remarks = Remarks::default();
     remarks.warn("optimality_gap", whole.wide.clone());
     let mut each = list.iter();
     let cut_short = each.find_map(|one| one.optimum.cut_short);
-    remarks.warn(STOPPED_EARLY, cut_short.map(solve_messages::cut_short));
+    let cut_short = cut_short.map(solve_messages::cut_short);
+    remarks.warn(STOPPED_EARLY, cut_short.clone());
     remarks.warn("shared_inputs", held_apart(task, &list));
+    // What is known of all of them is known of one that is alone.
+    for result in list.iter_mut().filter(|_| task.motions[0].is_alone()) {
+        result.accuracy.clone_from(&found.accuracy);
+        result.remarks.warn(STOPPED_EARLY, cut_short.clone());
+    }
     Ok(MotionsResult {
         verdict: verdict(task, &list),
         list,
@@ -340,19 +343,6 @@ pub struct MotionsResult {
     pub verdict: Verdict,
     /// Warnings and notes on all of them.
     pub remarks: Remarks,
-}
-
-/// Solves for several motions as one program; each is verified, refined and held as one by itself. `observer` sees the number of all intervals
-/// and every iterate.
-///
-/// # Errors
-/// As of `solve` of one motion.
-pub fn solve_motions(
-    motions: &Motions,
-    request: SolveRequest,
-    observer: &mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>,
-) -> Result<MotionsResult, WorkflowError> {
-    solve_task(&motions.task(), request, observer)
 }
 
 /// Inputs that differ by less, relative to the largest, are the same.

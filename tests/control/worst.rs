@@ -159,7 +159,7 @@ fn inputs_that_part_after_the_end_are_told() {
             panic!("several motions");
         };
         let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
-        solve_motions(&motions, SolveRequest::default(), go_on).unwrap()
+        solve_motions(&motions.task(), SolveRequest::default(), go_on).unwrap()
     };
     let held = found(&[
         r#"control.goal={"joint_angles":{"joint1":0.05},"hold":"find"}"#,

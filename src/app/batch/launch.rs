@@ -8,7 +8,7 @@
 use crate::app::kept::record::{WrittenSeconds, WrittenSummary};
 use crate::app::progress::ProgressDisplay;
 use crate::app::request::{CommandInput, PageWanted};
-use crate::control::problem::Task;
+use crate::files::Loaded;
 use crate::ipopt::Options;
 use crate::report::quoting;
 use crate::report::viewpoint::Viewpoint;
@@ -189,13 +189,12 @@ impl RunIn {
     }
 }
 
-/// Returns true if a task may run in parallel with others in one process.
-pub(crate) fn task_runs_at_once(task: &Task) -> bool {
-    let solver = match task {
-        Task::Control(control) => &control.solver,
-        Task::Motions(motions) => &motions.list[0].control.solver,
-        Task::Simulate(_) | Task::Equilibrium(_) | Task::Identify(_) => return true,
+/// Returns true if the task of a problem may run in parallel with others in one process.
+pub(crate) fn task_runs_at_once(loaded: &Loaded) -> bool {
+    let Some(task) = loaded.task.motions(&loaded.system) else {
+        return true;
     };
+    let solver = &task.motions[0].control.solver;
     let options = Options {
         linear_solver: solver.linear_solver,
         extra: solver.ipopt.clone(),

@@ -4,7 +4,7 @@ use crate::app::error::CommandError;
 use crate::app::kept::record::{FileRecords, WrittenSummary, digest, digest_of};
 use crate::app::request::{CommandInput, CommandOutput};
 use crate::app::task::{read, run};
-use crate::control::problem::{Control, Guess, Task};
+use crate::control::problem::{Control, Guess};
 use crate::files::solution::file_beside;
 use crate::files::{Loaded, lay_out};
 use crate::report::atomic::{self, WriteError};
@@ -130,7 +130,10 @@ pub(crate) fn identity(loaded: &Loaded, request: &CommandInput) -> String {
         page,
         ..
     } = request;
-    let earlier = earlier(task);
+    let motions = task.motions(system).into_iter();
+    let motions = motions.flat_map(|task| task.motions);
+    // Hashes of the files of earlier solutions from which it starts.
+    let earlier: Vec<String> = motions.flat_map(|one| of_guess(one.control)).collect();
     hash(format_args!(
         "{system:?}{task:?}{output:?}{earlier:?}{disturbed:?}{max_iterations:?}{wanted:?}{figures:?}{page:?}"
     ))
@@ -144,16 +147,6 @@ pub(crate) fn identity_of_words(words: &[String]) -> String {
 fn hash(written: fmt::Arguments<'_>) -> String {
     let program = Origin::program();
     digest(format_args!("{program}\n{written}"), DIGITS)
-}
-
-/// Hashes of the files of an earlier solution from which a task starts.
-fn earlier(task: &Task) -> Vec<String> {
-    let controls: Vec<&Control> = match task {
-        Task::Control(control) => vec![control],
-        Task::Motions(motions) => motions.list.iter().map(|one| &one.control).collect(),
-        Task::Simulate(_) | Task::Equilibrium(_) | Task::Identify(_) => Vec::new(),
-    };
-    controls.into_iter().flat_map(of_guess).collect()
 }
 
 /// Hashes of the files of the solution that a problem starts from.

@@ -78,6 +78,14 @@ pub(in crate::app) fn make_folder_of(request: &CommandInput) -> Result<PathBuf, 
     Ok(folder)
 }
 
+/// The folder of a motion within that of the results, which is that of one without a name.
+pub(in crate::app) fn folder_within(results: &Path, name: &str) -> PathBuf {
+    match name {
+        "" => results.to_owned(),
+        name => results.join(name),
+    }
+}
+
 /// Makes the folder of the results, or removes the files that killed runs left half written.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), WriteError> {
     fs::create_dir_all(folder).map_err(WriteError::at(folder))?;

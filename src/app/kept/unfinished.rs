@@ -1,15 +1,15 @@
 //! Latest iterate of a long run, stored in the folder of the results in case it is killed.
 
 use crate::app::error::CommandError;
-use crate::app::kept::overwrite_check::{make_folder, replaced};
+use crate::app::kept::overwrite_check::{folder_within, make_folder, replaced};
 use crate::app::kept::{resume_file, solution_file};
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::CommandInput;
-use crate::model::Model;
+use crate::control::problem::ControlTask;
 use crate::report::atomic::WriteError;
-use crate::tasks::SolveRequest;
+use crate::tasks::{MotionsResult, SolveRequest, solve_motions};
+use crate::workflow::Iterate;
 use crate::workflow::optimum::SolveLimits;
-use crate::workflow::{Iterate, IterateMotions, WorkflowError};
 use std::fs;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -104,23 +104,19 @@ pub(in crate::app) fn done(folder: &Path) {
     fs::remove_file(folder.join(resume_file::UNFINISHED)).ok();
 }
 
-/// Receives iterates with the number of their intervals, and says whether to go on.
-pub(in crate::app) type Observe<'a> = &'a mut dyn FnMut(usize, &Iterate<'_>) -> ControlFlow<()>;
-
-/// Solves what was `read` from files in some seconds; `keep` writes the motions of an iterate, the first of them at a path. Returns the result and the
-/// folder that was made.
-pub(in crate::app) fn solve<R>(
+/// Solves a task that was `read` from files in some seconds, and keeps its iterates. Returns the result and the folder that was made.
+pub(in crate::app) fn solve(
     request: &CommandInput,
+    task: &ControlTask<'_>,
     read: f64,
     observer: &mut dyn FnMut(Reached<'_>),
-    keep: impl Fn(&Path, &[&Model], IterateMotions<'_>) -> Result<(), WriteError>,
-    solve: impl FnOnce(SolveRequest, Observe<'_>) -> Result<R, WorkflowError>,
-) -> Result<(R, PathBuf), CommandError> {
+) -> Result<(MotionsResult, PathBuf), CommandError> {
     let mut unfinished = Unfinished::new(request, solution_file::UNFINISHED);
     let limits = SolveLimits {
         iterations: request.max_iterations,
         seconds: request.max_seconds.map(|s| (s - read).max(0.0)),
     };
+    let results = request.folder();
     let progress = Progress::of_solve(request.progress);
     let mut observe = |intervals: usize, iterate: &Iterate<'_>| {
         let Iterate { report, models, .. } = *iterate;
@@ -130,13 +126,22 @@ pub(in crate::app) fn solve<R>(
             unfinished.begin();
         }
         let (kept, motions) = iterate.before.unwrap_or((report, iterate.motions));
-        unfinished.consider(kept.primal_infeasibility, |path| {
-            keep(path, models, motions)
+        unfinished.consider(kept.primal_infeasibility, |_| {
+            let mut each = task.motions.iter().zip(models).enumerate();
+            each.try_for_each(|(number, (motion, model))| {
+                let own = folder_within(&results, motion.name);
+                make_folder(&own)?;
+                solution_file::replace(
+                    &own.join(solution_file::UNFINISHED),
+                    model,
+                    &motions(number),
+                )
+            })
         });
         unfinished.flow()
     };
     let wanted = request.wanted;
-    let found = solve(SolveRequest { wanted, limits }, &mut observe);
+    let found = solve_motions(task, SolveRequest { wanted, limits }, &mut observe);
     let found = found.map_err(CommandError::in_file(&request.input))?;
     drop(progress);
     Ok((found, unfinished.made()?))

@@ -17,10 +17,9 @@ use crate::app::kept::overwrite_check::{make_folder, make_folder_of};
 use crate::app::no_equilibrium;
 use crate::app::request::{CommandInput, CommandOutput, key};
 use crate::app::task::{read, refuse_replacing};
-use crate::control::Motion;
-use crate::control::problem::Task;
+use crate::control::problem::MotionTask;
 use crate::files::{Loaded, is_standard_input};
-use crate::workflow::program::resolve;
+use crate::workflow::program::resolve_each;
 use ended::{FOLDER, Start, StartEnd, best, number_optima};
 use files::write;
 
@@ -45,7 +44,7 @@ pub fn solve_from_starts(
     check_number(starts)?;
     let loaded = read(&request.input, text, &request.set)?;
     let places = check_problem(request, &loaded)?;
-    let run_in = wanted.of_tasks(task_runs_at_once(&loaded.task));
+    let run_in = wanted.of_tasks(task_runs_at_once(&loaded));
     if run_in == RunIn::Processes && is_standard_input(&request.input) {
         return Err(wrong_option(
             "each process reads the problem anew, which standard input does not allow: give a file"
@@ -94,32 +93,21 @@ fn check_number(starts: usize) -> Result<(), CommandError> {
 
 /// Checks that a problem has starting points, and that its starts and goals exist; returns the places of its guesses.
 fn check_problem(request: &CommandInput, loaded: &Loaded) -> Result<Vec<String>, CommandError> {
-    refuse_replacing(request, &loaded.task)?;
-    let places = match &loaded.task {
-        Task::Control(control) => {
-            resolve(&loaded.system, control).map(|_| vec!["control.guess".to_owned()])
-        }
-        Task::Motions(motions) => {
-            let each = motions.list.iter().enumerate();
-            let place = |(number, motion): (usize, &Motion)| {
-                let ends = resolve(&motion.system, &motion.control);
-                ends.map_err(|error| error.of_motion(&motion.name))?;
-                Ok(format!("control.motions[{number}].guess"))
-            };
-            each.map(place).collect()
-        }
-        task => {
-            return Err(wrong_option(format!(
-                "{} asks to {}: only \"control\" has starting points",
-                request.input.display(),
-                key(task)
-            )));
-        }
+    refuse_replacing(request, loaded)?;
+    let Some(task) = loaded.task.motions(&loaded.system) else {
+        return Err(wrong_option(format!(
+            "{} asks to {}: only \"control\" has starting points",
+            request.input.display(),
+            key(&loaded.task)
+        )));
     };
-    no_equilibrium::kept(
-        request,
-        places.map_err(CommandError::in_file(&request.input)),
-    )
+    let ends = resolve_each(&task).map_err(CommandError::in_file(&request.input));
+    no_equilibrium::kept(request, ends)?;
+    let place = |(number, motion): (usize, &MotionTask<'_>)| match motion.is_alone() {
+        true => "control.guess".to_owned(),
+        false => format!("control.motions[{number}].guess"),
+    };
+    Ok(task.motions.iter().enumerate().map(place).collect())
 }
 
 /// The starts: the guess of the problem, then random ones.
