@@ -17,7 +17,7 @@
 //! others make up for that of the constant as far as they can. Where the predictions f are straight, the sum of the squared residuals r rises
 //! by ‖J δ‖² there; where it rises otherwise, the data allow another interval.
 
-use crate::control::problem::{Channel, Identification, Recording};
+use crate::control::problem::{Identification, Recording};
 use crate::identify::error::IdentifyError;
 use crate::identify::fit::{Data, Fit, Series};
 use crate::identify::information::Information;
@@ -88,13 +88,8 @@ impl HeldOut {
         unknowns.starts[recording] = first..first + count;
         let which = [recording];
         let mut data = Data::new(task, &which);
-        let mut channels = task.recordings[recording].channels.iter();
-        if let Some(channel) = channels.find(|c| of.data.deviation(c, 1.0).is_none()) {
-            return Err(task.recordings[recording].refused(format!(
-                "nothing tells the standard deviation of {}, which no recording measures that constants are fitted to; expected one",
-                channel.name
-            )));
-        }
+        let others = "that constants are fitted to";
+        check_deviations(&task.recordings[recording], &of.data, others)?;
         data.take(&of.data);
         let on = |grid: &Grid| problem.fit(&which, unknowns.clone(), constants.len(), grid);
         let (mut grid, mut found) = (grid.clone(), on(grid)?);
@@ -405,12 +400,12 @@ impl Experiment {
             task: &alone,
             ..problem
         };
-        let added = one.predict(&[0], &unknowns, &grid)?.derivatives;
-        let added = standardised(added, recording, fit)?;
+        let mut data = Data::new(&alone, &[0]);
+        data.take(&fit.data);
+        let added = data.weighted(&one.predict(&[0], &unknowns, &grid)?);
         let before = fit.weighted();
         let (rows, columns) = before.shape();
-        let mut whole = DMatrix::zeros(rows + added.nrows(), columns + count);
-        whole.view_mut((0, 0), (rows, columns)).copy_from(&before);
+        let mut whole = before.resize(rows + added.nrows(), columns + count, 0.0);
         let mut below = whole.rows_mut(rows, added.nrows());
         below
             .columns_mut(0, constants)
@@ -427,40 +422,16 @@ impl Experiment {
     }
 }
 
-/// Derivatives in standard deviations, of which those that are not known are as in the fit.
-fn standardised(
-    mut derivatives: DMatrix<f64>,
-    candidate: &Recording,
-    fit: &Fit,
-) -> Result<DMatrix<f64>, IdentifyError> {
-    let mut row = 0;
-    for channel in &candidate.channels {
-        for reading in &channel.readings {
-            let deviation = deviation(candidate, channel, &fit.data, reading.deviation)?;
-            let mut into = derivatives.row_mut(row);
-            into /= deviation;
-            row += 1;
-        }
-    }
-    Ok(derivatives)
-}
-
-/// Refuses a candidate with readings whose standard deviation is neither known nor estimated from these data.
-pub(super) fn check_deviations(candidate: &Recording, data: &Data) -> Result<(), IdentifyError> {
-    let mut channels = candidate.channels.iter();
-    channels.try_for_each(|channel| deviation(candidate, channel, data, 1.0).map(|_| ()))
-}
-
-/// The standard deviation of a reading with this relative one.
-fn deviation(
-    candidate: &Recording,
-    channel: &Channel,
+/// Refuses a recording with readings whose standard deviation is neither known nor estimated from these data, of recordings in words.
+pub(super) fn check_deviations(
+    recording: &Recording,
     data: &Data,
-    relative: f64,
-) -> Result<f64, IdentifyError> {
-    let found = data.deviation(channel, relative);
-    found.ok_or_else(|| candidate.refused(format!(
-        "nothing tells the standard deviation of {}, which no recording measures whose deviation is estimated; expected one",
+    others: &str,
+) -> Result<(), IdentifyError> {
+    let mut channels = recording.channels.iter();
+    let unknown = channels.find(|channel| !data.tells_deviation(channel));
+    unknown.map_or(Ok(()), |channel| Err(recording.refused(format!(
+        "nothing tells the standard deviation of {}, which no recording measures {others}; expected one",
         channel.name
-    )))
+    ))))
 }

@@ -450,13 +450,9 @@ impl Data {
         out
     }
 
-    /// The deviation of a channel whose readings have this relative one; none where nothing tells it.
-    pub(super) fn deviation(&self, channel: &Channel, relative: f64) -> Option<f64> {
-        if channel.is_deviation_known {
-            return Some(relative);
-        }
-        let group = self.kinds.iter().position(|kind| *kind == channel.parts)?;
-        Some(relative * self.of_groups[group])
+    /// Returns true if the deviation of a channel is known, or estimated with these data.
+    pub(super) fn tells_deviation(&self, channel: &Channel) -> bool {
+        channel.is_deviation_known || self.kinds.contains(&channel.parts)
     }
 
     /// Takes the deviations that are not known from other data of the same quantities.

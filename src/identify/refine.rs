@@ -214,7 +214,7 @@ fn begin(problem: Problem<'_>, fitted: &[usize]) -> Result<Unknowns, IdentifyErr
     let data = Data::new(task, fitted);
     for candidate in &task.candidates {
         fixed_starts(problem, candidate)
-            .and_then(|()| check_deviations(candidate, &data))
+            .and_then(|()| check_deviations(candidate, &data, "whose deviation is estimated"))
             .map_err(IdentifyError::of_candidate)?;
     }
     let count = |&r: &usize| problem.count_of_start(&task.recordings[r]);
