@@ -71,11 +71,9 @@ impl<'m> Transcription<'m> {
         control: &Control,
         initial: &InitialGuess,
     ) -> Result<Self, BoundaryError> {
-        let layout = Layout::new(model, boundary, control, control.intervals);
-        match overdetermined(&layout, model, control.intervals) {
-            Some(error) => Err(error),
-            None => Self::laid_out(model, boundary, control, initial, layout),
-        }
+        let out = Self::of_any(model, boundary, control, initial)?;
+        let refused = overdetermined(&out.layout, model, control.intervals);
+        refused.map_or(Ok(out), Err)
     }
 
     /// Transcribes like [`new`](Self::new), also where there are more equations than unknowns: derivatives exist all the same.
@@ -89,16 +87,6 @@ impl<'m> Transcription<'m> {
         initial: &InitialGuess,
     ) -> Result<Self, BoundaryError> {
         let layout = Layout::new(model, boundary, control, control.intervals);
-        Self::laid_out(model, boundary, control, initial, layout)
-    }
-
-    fn laid_out(
-        model: &'m Model,
-        boundary: &BoundaryConditions,
-        control: &Control,
-        initial: &InitialGuess,
-        layout: Layout,
-    ) -> Result<Self, BoundaryError> {
         let objective = Objective::new(model, boundary, control, &layout);
         let structure = Structure::new(model, &layout, &objective)?;
         let workspace = Workspace::new(model, boundary, control, initial, &layout);
