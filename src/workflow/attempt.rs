@@ -13,7 +13,7 @@ use crate::workflow::error::WorkflowError;
 use crate::workflow::hold_check;
 use crate::workflow::motion::{Iterate, solved};
 use crate::workflow::optimum::{
-    Active, Budget, Optimum, Shortest, SolveLimits, Violation, WholeProgram, active, violations,
+    Active, Optimum, Shortest, SolveLimits, Violation, WholeProgram, active, violations,
 };
 use crate::workflow::program::{
     Counted, PreparedTogether, ProgramMotion, multipliers_of, prepare_together, program_motions,
@@ -84,7 +84,7 @@ pub(crate) fn attempt(
     allowed: SolveLimits,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Together, WorkflowError> {
-    let (began, budget) = (Instant::now(), Budget::new(allowed));
+    let began = Instant::now();
     let watch = stop::watch(allowed.seconds);
     phase("building the model, finding start and goal");
     let resolved = resolve_each(task).map_err(stop::unless_stopped)?;
@@ -101,7 +101,6 @@ pub(crate) fn attempt(
     let first = motions[0];
     let options = Options {
         start,
-        max_seconds: budget.left(),
         ..options(first.model, first.task.control, allowed)
     };
     phase("ordering and first factorisation");
@@ -112,7 +111,6 @@ pub(crate) fn attempt(
         combined: task.combined,
         solver: Solver::new(program, options.clone()),
         options,
-        budget,
         observer,
     };
     let solution = solves.solve(&point)?;
@@ -300,7 +298,7 @@ fn part_of(
     }
 }
 
-/// Options of the solver for a problem, without those of its start and its time.
+/// Options of the solver for a problem, without that of its start; a watch keeps its time.
 fn options(model: &Model, control: &Control, allowed: SolveLimits) -> Options {
     Options {
         tolerance: control.solver.tolerance,

@@ -15,7 +15,7 @@
 //! ends a solve at a search direction that is too small, that direction bounds the change of each variable in place of its scale.
 
 use crate::control::problem::Combined;
-use crate::control::{BoundaryError, Carried, InitialGuess, Solution, Transcription};
+use crate::control::{BoundaryError, InitialGuess, Solution, Transcription};
 use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt::{Iteration, Options, Reached, Solver, SolverResult, Start, StartingPoint};
 use crate::model::Model;
@@ -24,7 +24,6 @@ use crate::nlp::{Bounds, Multipliers, Nlp, Status, slopes};
 use crate::stop;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, solved};
-use crate::workflow::optimum::Budget;
 use crate::workflow::program::{
     ProgramMotion, ProgramPart, joined, multipliers_of, states_of_rest,
 };
@@ -42,7 +41,6 @@ pub(super) struct Solves<'a, 'm> {
     pub(super) combined: Combined,
     /// Options of the first solve.
     pub(super) options: Options,
-    pub(super) budget: Budget,
     /// Function that sees every iterate.
     pub(super) observer: &'a mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
     pub(super) solver: Solver<Joined<Transcription<'m>>>,
@@ -114,7 +112,6 @@ impl Solves<'_, '_> {
                 break;
             };
             let options = Options {
-                max_seconds: self.budget.left(),
                 start: Start::PRIMAL,
                 ..self.options.clone()
             };
@@ -151,11 +148,10 @@ impl Solves<'_, '_> {
             let is_done = gap.is_closed() || !solution.status.is_stationary();
             let next = gap.next(&solution, &self.options);
             let next = next.filter(|_| !is_done && stop::reason().is_none());
-            let Some(mut options) = next else {
+            let Some(options) = next else {
                 break;
             };
             phase("solving again, with the objective scaled by its size");
-            options.max_seconds = self.budget.left();
             self.solver.set_options(options.clone());
             let again = self.solve(&solution.to_point())?;
             let program = self.solver.program_mut();
@@ -209,12 +205,8 @@ pub(crate) fn recentred(model: &Model, discrete: &DiscreteTrajectory) -> Option<
 
 /// A guess of a motion as it is.
 fn guess(discrete: DiscreteTrajectory) -> InitialGuess {
-    InitialGuess {
-        h: discrete.times[1],
-        discrete,
-        costates: None,
-        carried: Carried::default(),
-    }
+    let h = discrete.times[1];
+    InitialGuess::of_motion(discrete, h)
 }
 
 /// Adds iterations, evaluations and seconds of an earlier solve.
