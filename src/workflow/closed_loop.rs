@@ -23,7 +23,7 @@ use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The motion under a controller, and without its corrections, compared with that of the law.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct ClosedLoop {
     /// Number of samples.
     pub samples: usize,
@@ -157,14 +157,8 @@ impl ClosedLoop {
             samples_at_lower_bound,
             samples_at_upper_bound,
             plans,
-            limits: None,
-            markers: BTreeMap::new(),
-            joints: BTreeMap::new(),
-            tracked: Vec::new(),
-            tracked_open: Vec::new(),
             open_loop_failure,
-            open_loop: None,
-            disturbance: Vec::new(),
+            ..Self::default()
         };
         for (name, places) in &law.markers {
             let all = &model.system.markers;

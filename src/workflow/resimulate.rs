@@ -34,7 +34,7 @@ const ROUNDING: f64 = 1e-7;
 const LOST: f64 = 1.0;
 
 /// Verification of optimal voltages.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Resimulation {
     /// Greatest deviation from the optimal motion at its instants, with its step.
     pub deviation: Distance,
@@ -102,16 +102,10 @@ pub(crate) fn resimulate(
     let mut out = Resimulation {
         deviation: own.greatest(),
         path_length,
-        finer: Vec::new(),
-        error: None,
-        is_confirmed: false,
-        held: None,
-        drift: None,
         failure: own.failure.clone(),
         cause: open(model, optimal, tolerance)
             .or_else(|| own.cause(model, optimal, SAME.0.max(SAME.1 * tolerance))),
-        half: None,
-        end: None,
+        ..Resimulation::default()
     };
     if own.failure.is_some() || out.cause.is_some() {
         return out;
