@@ -8,22 +8,27 @@
 //! ```text
 //! D₂L_d(q_{N−1}, q_N) + D₁L_d(q_N, q_N; u) = 0,     D₂L_d(q_N, q_N; u) = 0.
 //! ```
+//!
+//! Places and orientations of a goal or a waypoint as equations of one instant, without those that nothing can change.
 
 use crate::control::boundary_conditions::{
     BoundaryConditions, Rests, TerminalState, check_muscles, resolve_start, rest_at,
 };
 use crate::control::costs::{resisted, sources};
 use crate::control::error::BoundaryError;
-use crate::control::goal::instant_at;
+use crate::control::goal::{Orientation, Place, Product, instant_at};
 use crate::control::limits::{BoundedQuantity, Length, Limits, When};
 use crate::control::prescribed::at_rest;
 use crate::control::problem::{BoundaryState, Control, Duration, During, Rest, SoughtHold};
+use crate::control::transcription::Site;
 use crate::control::transcription::layout::Layout;
 use crate::control::transcription::structure::overdetermined;
-use crate::control::{endpoint_checks, free_parameters, goal_rows, prescribed};
+use crate::control::{endpoint_checks, free_parameters, prescribed};
 use crate::dynamics::{Equilibrium, Start};
-use crate::math::shortest;
+use crate::functional::Sample;
+use crate::math::{Random, Vector, shortest};
 use crate::model::{Analysis, Coordinates, Graph, Model, Presolved, Quantity, System, What};
+use std::collections::BTreeMap;
 
 impl BoundaryConditions {
     /// Builds the model of a control problem and resolves its start and goal.
@@ -101,7 +106,7 @@ impl BoundaryConditions {
         let rests = rests_at(&control.goal);
         prescribed::check_end_of_motions(&model, control, rests != Rests::Nothing)?;
         let (start, of_start) = start_of(&model, &control.start)?;
-        goal_rows::leave_out_constant(&mut model, &limits, &start.z)?;
+        leave_out_constant(&mut model, &limits, &start.z)?;
         let (mut given, of_goal) = coordinates_at_goal(&model, control)?;
         prescribed::at_goal(&model, control, &mut given)?;
         if let Some(z) = given.iter().copied().collect::<Option<Vec<f64>>>() {
@@ -158,11 +163,11 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
             rest,
             ..
         } => {
-            goal_rows::add_places(&mut limits, system, places, When::Goal, "goal");
+            add_places(&mut limits, system, places, When::Goal, "goal");
             if *rest == Rest::Bodies {
-                goal_rows::add_rest(&mut limits, system, places.keys());
+                add_rest(&mut limits, system, places.keys());
             }
-            goal_rows::add_orientations(&mut limits, system, orientations, When::Goal, "goal");
+            add_orientations(&mut limits, system, orientations, When::Goal, "goal");
         }
         goal @ BoundaryState::JointAngles { angles, .. }
             if redundant && !all_joints_given(system, goal) =>
@@ -177,8 +182,8 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
     }
     for waypoint in &control.waypoints {
         let (when, at) = (When::At(waypoint.part), waypoint.name.as_str());
-        goal_rows::add_places(&mut limits, system, &waypoint.places, when, at);
-        goal_rows::add_orientations(&mut limits, system, &waypoint.orientations, when, at);
+        add_places(&mut limits, system, &waypoint.places, when, at);
+        add_orientations(&mut limits, system, &waypoint.orientations, when, at);
         for (&joint, &near) in &waypoint.angles {
             let name = format!("{at} coordinate of {}", system.joints[joint].name);
             limits.add_at(when, Quantity::joint(joint, near), [near; 2], name);
@@ -418,5 +423,125 @@ pub(super) fn check_sought_hold(model: &Model, control: &Control) -> Result<(), 
     };
     reason.map_or(Ok(()), |reason| {
         Err(BoundaryError::refused("goal.hold", reason))
+    })
+}
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+/// Configurations at which a gradient has to vanish.
+const TRIALS: u64 = 3;
+/// Distance of these from the start, in rad and lengths of the system.
+const NEAR: f64 = 0.3;
+/// A gradient of this size is rounding.
+const ROUNDING: f64 = 1e-12;
+
+/// Adds the equations of places of markers at a single instant, called `at` in messages.
+fn add_places(
+    limits: &mut Limits,
+    system: &System,
+    places: &BTreeMap<usize, Place>,
+    when: When,
+    at: &str,
+) {
+    for (&marker, place) in places {
+        let name = &system.markers[marker].name;
+        let is_free = |axis: usize| !system.holds_marker(marker, axis);
+        for (axis, value) in place.given().filter(|(axis, _)| is_free(*axis)) {
+            let name = format!("{at} {} of marker {name}", AXES[axis]);
+            let quantity = Quantity::marker_place(marker, axis);
+            limits.add_at(when, quantity, [value; 2], name);
+        }
+    }
+}
+
+/// Adds the equations of the rest of markers at the goal.
+fn add_rest<'p>(limits: &mut Limits, system: &System, markers: impl Iterator<Item = &'p usize>) {
+    for &marker in markers {
+        let name = &system.markers[marker].name;
+        for axis in (0..3).filter(|&axis| !system.holds_marker(marker, axis)) {
+            let name = format!("rest at the goal, {} of marker {name}", AXES[axis]);
+            let quantity = Quantity::step(What::Place { marker, axis }, 1.0);
+            limits.add_at(When::Goal, quantity, [0.0; 2], name);
+        }
+    }
+}
+
+/// Adds the conditions of orientations of bodies at a single instant, called `at` in messages.
+fn add_orientations(
+    limits: &mut Limits,
+    system: &System,
+    orientations: &BTreeMap<usize, Orientation>,
+    when: When,
+    at: &str,
+) {
+    for (&body, orientation) in orientations {
+        let name = format!("{at} orientation of body {}", system.bodies[body].name);
+        for Product {
+            axis,
+            along,
+            is_acute,
+        } in orientation.products()
+        {
+            let quantity = Quantity::of(What::Direction { body, axis, along });
+            let upper = if is_acute { f64::INFINITY } else { 0.0 };
+            limits.add_at(when, quantity, [0.0, upper], name.clone());
+        }
+    }
+}
+
+/// Leaves out directions at the goal that no joint coordinate changes, such as those across the plane of a plane robot: as
+/// equations they would have no slope. A direction that is not kept by itself is refused.
+///
+/// # Errors
+/// Nothing turns a direction to where the goal wants it.
+fn leave_out_constant(
+    model: &mut Model,
+    limits: &Limits,
+    start: &[f64],
+) -> Result<(), BoundaryError> {
+    if model.coordinates != Coordinates::Reduced {
+        return Ok(());
+    }
+    for (index, bounded) in limits.list.iter().enumerate() {
+        let is_direction = matches!(bounded.quantity.what, What::Direction { .. });
+        let Some(measure) = model.measured[index] else {
+            continue;
+        };
+        if !bounded.when.is_single() || !is_direction || changes(model, measure, start) {
+            continue;
+        }
+        let instant = model.action.map.placed(start);
+        let measure = Site::Instants.measure(model, measure);
+        let value = measure.value(&Sample::of_instant(&instant.x, &[]));
+        if let Some(reason) = bounded.broken(value, &model.system) {
+            let reason = format!("{reason}; no joint changes it");
+            return Err(BoundaryError::refused("goal", reason));
+        }
+        model.measured[index] = None;
+    }
+    Ok(())
+}
+
+/// Returns true if coordinates change a quantity of the instants somewhere.
+fn changes(model: &Model, measure: usize, start: &[f64]) -> bool {
+    let map = &model.action.map;
+    let measure = Site::Instants.measure(model, measure);
+    let length = model.length();
+    (0..TRIALS).any(|seed| {
+        let mut random = Random::new(seed);
+        let mut z = start.to_vec();
+        for (i, value) in z[..map.of_bodies].iter_mut().enumerate() {
+            let size = if model.is_length(i) { length } else { 1.0 };
+            *value += random.between(-NEAR, NEAR) * size;
+        }
+        let mut instant = map.placed(&z);
+        map.tangent(&mut instant);
+        let zeros = || vec![Vector::zeros(); instant.x.len()];
+        let (mut forces, mut rows) = ([zeros(), zeros()], Vec::new());
+        measure.gradient(&Sample::of_instant(&instant.x, &[]), &mut forces, &mut rows);
+        let mut slopes = vec![0.0; map.unknowns()];
+        for vector in measure.vectors() {
+            map.pull_back_one(vector, &instant.columns, &forces[0][vector], &mut slopes);
+        }
+        slopes.iter().any(|slope| slope.abs() > ROUNDING)
     })
 }

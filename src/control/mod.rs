@@ -8,7 +8,6 @@ mod endpoint_checks;
 mod error;
 mod free_parameters;
 mod goal;
-mod goal_rows;
 mod guess;
 mod identification;
 mod implicit;

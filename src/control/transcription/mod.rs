@@ -9,14 +9,13 @@
 //!
 //! A [`Transcription`] has constant parts, `layout` (unknowns, equations, limits), `cost_rows` and `structure` (entries of the derivatives),
 //! and one that every evaluation changes, `workspace`. Its methods are in `program` (the trait [`Nlp`]), `point`, `interval_pass`, `scaling` and
-//! `costs`.
+//! `measured`.
 
 mod cost_rows;
-mod costs;
 mod interval_pass;
 pub(super) mod layout;
 mod limit_rows;
-mod limit_values;
+mod measured;
 mod point;
 mod program;
 mod scaling;
