@@ -1,12 +1,10 @@
 //! An identification from file to folder.
 
 use crate::app::error::CommandError;
-use crate::app::identification_summary::Identification;
-use crate::app::identification_verdict::{remarks, status};
-use crate::app::kept::overwrite_check::make_folder_of;
-use crate::app::kept::partial_result::EARLIER;
+use crate::app::identification_summary::{Identification, remarks, status};
+use crate::app::kept::record::make_folder_of;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted};
-use crate::app::summary::Summary;
+use crate::app::summary::{EARLIER, Summary};
 use crate::control::problem;
 use crate::files::Loaded;
 use crate::identify::{

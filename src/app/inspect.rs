@@ -2,7 +2,7 @@
 
 use crate::app::blocks;
 use crate::app::error::CommandError;
-use crate::app::kept::overwrite_check::make_folder;
+use crate::app::kept::record::make_folder;
 use crate::app::program::joined;
 use crate::app::request::{CommandInput, CommandOutput, key};
 use crate::app::task::read;

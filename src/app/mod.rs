@@ -1,14 +1,13 @@
 //! Commands: files in, files and messages out.
 //!
-//! - `solve`, `motions`, `simulation`, `equilibrium`, `identification`: the tasks; `task` chooses the one of a file; `path`: paths of equilibria.
+//! - `solve`, `simulation`, `equilibrium`, `identification`: the tasks; `task` chooses the one of a file.
 //! - `batch`: several solves in parallel, in threads or processes; `multistart`: a control problem from several guesses.
 //! - `inspect`, `templates`: the other commands; `program`: entry points for other languages in place of files.
 //! - `kept`: results in their folders, found again and gone on from.
 //! - `summary`: `summary.json`; `feedback_files`, `fields`: files of gains and of elastic blocks; [`report`](crate::report) writes figures, tables and
 //!   page.
 //! - `displayed_motion`: part of a motion that tables, figures and page show.
-//! - `blocks`, `comparison`, `linear_systems`, `solve_summary`, `equilibrium_summary`, `sensitivity_summary`, `identification_summary`,
-//!   `identification_verdict`, `no_equilibrium`: texts about a result.
+//! - `blocks`, `comparison`, `linear_systems`, `solve_summary`, `equilibrium_summary`, `identification_summary`: texts about a result.
 //! - `progress`, `request`, `error`: common parts of commands.
 
 mod batch;
@@ -22,18 +21,13 @@ mod feedback_files;
 mod fields;
 mod identification;
 mod identification_summary;
-mod identification_verdict;
 mod inspect;
 mod kept;
 mod linear_systems;
-mod motions;
 mod multistart;
-mod no_equilibrium;
-mod path;
 mod program;
 mod progress;
 mod request;
-mod sensitivity_summary;
 mod simulation;
 mod solve;
 mod solve_summary;
@@ -48,8 +42,7 @@ pub use error::CommandError;
 pub use inspect::{Inspected, inspect, inspected};
 pub use kept::cache::run_once;
 pub(crate) use kept::cache::{Found, found, identity, identity_of_words};
-pub(crate) use kept::overwrite_check::{make_folder, without_dots};
-pub use motions::compare;
+pub(crate) use kept::record::{make_folder, without_dots};
 pub use multistart::solve_from_starts;
 pub use program::{
     FileHorizon, SiController, changed_text, check, check_text, checked, with_program,
@@ -57,6 +50,7 @@ pub use program::{
 pub(crate) use progress::progress_bar;
 pub use progress::{ProgressDisplay, Reached};
 pub use request::{CommandInput, CommandOutput, PageWanted};
+pub use solve::compare;
 pub use summary::written_summary;
 pub use task::{run, run_observed, simulate};
 pub use templates::{

@@ -1,15 +1,27 @@
 //! `summary.json`: the problem, its status, its size and its times.
+//!
+//! Parts that a stop leaves out of a result: tables, figures and page that are not made in time.
+//!
+//! Result of a run that finds no state of rest to begin with, to end with, or at all, or no optimum that its controller follows: its summary alone.
 
 use crate::app::blocks::EnergySummary;
 use crate::app::comparison::Comparison;
 use crate::app::displayed_motion::ShownPart;
 use crate::app::error::CommandError;
-use crate::app::request::CommandInput;
+use crate::app::fields::FOLDER;
+use crate::app::kept::record::make_folder_of;
+use crate::app::request::{CommandInput, CommandOutput, key};
+use crate::control::problem::Task;
+use crate::dynamics::EquilibriumError;
 use crate::files::{Entries, Loaded, lay_out};
 use crate::ipopt;
-use crate::report::PageContent;
+use crate::model::Model;
+use crate::nlp::Status;
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
+use crate::report::paraview::remove_from;
+use crate::report::{PageContent, quoting};
+use crate::stop::TimeLimit;
 use crate::workflow::accuracy::Accuracy;
 use crate::workflow::closed_loop::ClosedLoop;
 use crate::workflow::effects::Plan;
@@ -193,4 +205,167 @@ fn asked(loaded: &Loaded) -> Vec<(String, String)> {
         documents.push(("Scene".to_owned(), lay_out(&loaded.scene)));
     }
     documents
+}
+
+/// Files that an earlier result of the folder may have.
+pub(super) const EARLIER: [&str; 29] = [
+    "body_forces.svg",
+    "charge.svg",
+    "charges.svg",
+    "configuration.svg",
+    "continuation.npz",
+    "controls.csv",
+    "energy.svg",
+    "equilibrium.csv",
+    "forces.svg",
+    "joint_angles.svg",
+    "motion.gltf",
+    "parts.pvd",
+    "path.csv",
+    "path.svg",
+    "report.html",
+    "residuals.csv",
+    "snapshots.svg",
+    "solution.json",
+    "solution.npz",
+    "surface_charges.svg",
+    "tables.npz",
+    "tip_path.svg",
+    "torques.svg",
+    "tracking.csv",
+    "tracking.svg",
+    "tractions.svg",
+    "trajectory.csv",
+    "trajectory.pvd",
+    "voltages.svg",
+];
+
+/// Statuses of a run that was stopped.
+pub(super) const STOPPED: [&str; 2] = ["interrupted", "time_limit"];
+
+/// Most unknowns of a run that was stopped whose effects are counted: those of 10⁶ take several seconds.
+const COUNTED: usize = 100_000;
+
+/// The plan of a model; where a large one was stopped, without effects and with words that say so.
+pub(super) fn plan(model: &Model, was_stopped: bool) -> (Plan, Option<String>) {
+    match was_stopped && model.variables.unknown_count() > COUNTED {
+        true => {
+            let words = "effects are not counted: the run was stopped";
+            (Plan::uncounted(model), Some(words.to_owned()))
+        }
+        false => (Plan::from_model(model, None, MEASURED), None),
+    }
+}
+
+/// The limit of writing, of a run that began at a time.
+pub(super) fn time_to_write(request: &CommandInput, began: Instant) -> TimeLimit {
+    let spent = began.elapsed().as_secs_f64();
+    TimeLimit::with_grace(request.max_seconds.map(|seconds| seconds - spent))
+}
+
+/// Makes a result one whose writing was stopped: the first `kept` files alone, a warning, and the status where it has no message of another.
+pub(super) fn leave_out(summary: &mut Summary, stopped: Status, files: &mut FileSet, kept: usize) {
+    files.truncate(kept);
+    EARLIER.iter().for_each(|name| files.remove(name));
+    remove_from(0, FOLDER, files);
+    if summary.message.is_none() {
+        stopped.word().clone_into(&mut summary.status);
+    }
+    let words = "tables, figures and page are left out: the run was stopped before they were made";
+    summary.notes.warn("left_out", [words.to_owned()]);
+}
+
+/// Writes the summary of a run that has ended so, and gives its answer back.
+///
+/// # Errors
+/// Those of the run; or the summary cannot be written.
+pub(super) fn keep_unanswered<T>(
+    request: &CommandInput,
+    answer: Result<T, CommandError>,
+) -> Result<T, CommandError> {
+    if let Err(error @ CommandError::InFile { error: reason, .. }) = &answer
+        && let Some(status) = error.unanswered()
+    {
+        write_alone(request, status, &reason.to_string())?;
+    }
+    answer
+}
+
+/// Writes the summary alone, with a status and its reason.
+///
+/// # Errors
+/// It cannot be written.
+fn write_alone(
+    request: &CommandInput,
+    status: &'static str,
+    reason: &str,
+) -> Result<(), CommandError> {
+    let folder = make_folder_of(request)?;
+    let mut summary = Summary::new(request, status, None);
+    summary.message = Some(reason.to_owned());
+    let mut files = FileSet::in_folder(&folder);
+    EARLIER.iter().for_each(|name| files.remove(name));
+    Ok(summary.write(files)?)
+}
+
+/// Handles a missing equilibrium: a floating block is wrong input, anything else a result of which the summary alone is written.
+pub(super) fn refused(
+    request: &CommandInput,
+    error: &EquilibriumError,
+    result: &str,
+) -> Result<CommandOutput, CommandError> {
+    match error {
+        EquilibriumError::Floating { .. } => {
+            return Err(CommandError::problem(
+                &request.input,
+                "equilibrium",
+                error.to_string(),
+            ));
+        }
+        EquilibriumError::Stopped(stopped) => return Err((*stopped).into()),
+        _ => {}
+    }
+    write_alone(request, "no_equilibrium", &error.to_string())?;
+    Ok(CommandOutput {
+        is_solved: false,
+        result: format!("{result}, {}", request.folder().display()),
+        notes: vec![error.to_string()],
+    })
+}
+
+/// Refuses a problem that asks for something else than a motion under given voltages.
+pub(super) fn refuse_all_but_motions(
+    request: &CommandInput,
+    task: &Task,
+) -> Result<(), CommandError> {
+    let (asks, word, instead) = match task {
+        Task::Simulate(_) => return Ok(()),
+        Task::Control(_) | Task::Motions(_) => (
+            "optimal voltages",
+            "solve",
+            "; a motion under given voltages is asked for by \"simulate\" in place of \"control\"",
+        ),
+        Task::Identify(_) => ("constants", "solve", ""),
+        Task::Equilibrium(_) => ("a state of rest", "equilibrium", ""),
+    };
+    Err(asks_for(request, task, [asks, word, instead]))
+}
+
+/// The refusal of a problem that asks for no state of rest.
+pub(super) fn no_equilibrium(request: &CommandInput, task: &Task) -> CommandError {
+    let (asks, word) = match task {
+        Task::Control(_) | Task::Motions(_) => ("optimal voltages", "solve"),
+        Task::Identify(_) => ("constants", "solve"),
+        _ => ("a motion", "simulate"),
+    };
+    let instead =
+        ", and for no equilibrium; for that of its scene name the voltages with --voltages";
+    asks_for(request, task, [asks, word, instead])
+}
+
+/// The refusal of a problem that asks for something else, with the word of the command that finds it.
+fn asks_for(request: &CommandInput, task: &Task, [asks, word, instead]: [&str; 3]) -> CommandError {
+    let found = quoting::command(request.words(word));
+    let reason = format!("asks for {asks}, found by `{found}`{instead}");
+    CommandError::problem(&request.input, key(task), reason)
 }

@@ -4,12 +4,12 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::app::error::CommandError;
-use crate::app::kept::overwrite_check::{folder_within, refuse_foreign};
+use crate::app::kept::record::{folder_within, refuse_foreign};
 use crate::app::kept::resume_file;
-use crate::app::no_equilibrium::refuse_all_but_motions;
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput};
-use crate::app::{equilibrium, identification, no_equilibrium, simulation, solve};
+use crate::app::summary::{keep_unanswered, refuse_all_but_motions};
+use crate::app::{equilibrium, identification, simulation, solve};
 use crate::control::problem::{BoundaryState, Guess, Task};
 use crate::control::{Earlier, Motions};
 use crate::files::solution::SolutionFile;
@@ -76,7 +76,7 @@ fn run_checked(
         }
         Task::Identify(task) => identification::run(request, &loaded, task, began),
     };
-    no_equilibrium::kept(request, answer)
+    keep_unanswered(request, answer)
 }
 
 /// Reads a problem and checks that the machine has room for it.

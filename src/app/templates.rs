@@ -4,7 +4,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::app::error::CommandError;
-use crate::app::kept::overwrite_check::make_folder;
+use crate::app::kept::record::make_folder;
 use crate::app::request::CommandOutput;
 use crate::files;
 use crate::files::named_materials;

@@ -75,7 +75,7 @@ const PATHS: [(&str, &str); 52] = [
     ("app/rest", "app/equilibrium"),
     ("app/rest_model", "tasks/equilibrium"),
     ("app/rest_observed", "app/equilibrium_summary"),
-    ("app/rest_refused", "app/no_equilibrium"),
+    ("app/rest_refused", "app/summary"),
     ("app/rest_words", "app/equilibrium_summary"),
     ("app/shown", "app/displayed_motion"),
     ("app/solve_words", "tasks/solve_messages"),

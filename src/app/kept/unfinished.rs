@@ -1,7 +1,7 @@
 //! Latest iterate of a long run, stored in the folder of the results in case it is killed.
 
 use crate::app::error::CommandError;
-use crate::app::kept::overwrite_check::{folder_within, make_folder, replaced};
+use crate::app::kept::record::{folder_within, make_folder, replaced};
 use crate::app::kept::{resume_file, solution_file};
 use crate::app::progress::{Progress, Reached};
 use crate::app::request::CommandInput;

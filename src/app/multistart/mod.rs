@@ -1,27 +1,32 @@
 //! A control problem solved from several starting points, in threads or in processes.
 //!
 //! Each start is an ordinary `solve` of the same problem with another guess in a folder of its own, `starts/03`, and can be run again
-//! alone. Ipopt with MUMPS takes one solve at a time in a process, so that each start has a process of its own then.
+//! alone. Ipopt with MUMPS takes one solve at a time in a process, so that each start has a process of its own then. The files of the best start
+//! and a table of all are the result.
 
-mod ended;
-mod files;
-mod rank;
-
-use std::fs;
-use std::path::Path;
-use std::time::Instant;
-
-use crate::app::batch::{Batch, RunIn, run_all, task_runs_at_once};
+use crate::app::batch::{Batch, Ended, RunIn, run_all, task_runs_at_once};
 use crate::app::error::CommandError;
-use crate::app::kept::overwrite_check::{make_folder, make_folder_of};
-use crate::app::no_equilibrium;
+use crate::app::kept::record::{WrittenSummary, make_folder, make_folder_of, parsed};
 use crate::app::request::{CommandInput, CommandOutput, key};
+use crate::app::summary::keep_unanswered;
 use crate::app::task::{read, refuse_replacing};
 use crate::control::problem::MotionTask;
-use crate::files::{Loaded, is_standard_input};
+use crate::files::{Entries, Loaded, is_standard_input, printable};
+use crate::math::significant;
+use crate::report::atomic::{self, WriteError};
+use crate::report::file_set::FileSet;
+use crate::report::table::{aligned, cells_csv};
+use crate::stop;
 use crate::workflow::program::resolve_each;
-use ended::{FOLDER, Start, StartEnd, best, number_optima};
-use files::write;
+use rank::Rank;
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+mod rank;
 
 /// Most starting points of one command; the seed of a start is that of the command times this number and its own.
 const MOST: usize = 1000;
@@ -102,7 +107,7 @@ fn check_problem(request: &CommandInput, loaded: &Loaded) -> Result<Vec<String>,
         )));
     };
     let ends = resolve_each(&task).map_err(CommandError::in_file(&request.input));
-    no_equilibrium::kept(request, ends)?;
+    keep_unanswered(request, ends)?;
     let place = |(number, motion): (usize, &MotionTask<'_>)| match motion.is_alone() {
         true => "control.guess".to_owned(),
         false => format!("control.motions[{number}].guess"),
@@ -133,4 +138,372 @@ fn remove_older(folder: &Path) {
             fs::remove_dir_all(entry.path()).ok();
         }
     }
+}
+
+/// Writes the files of the best start and the table of all, and returns a message.
+fn write(
+    request: &CommandInput,
+    batch: &Batch<'_>,
+    ended: &[StartEnd],
+    distinct: usize,
+) -> Result<CommandOutput, CommandError> {
+    let folder = &*request.folder();
+    let origin = request.origin(true);
+    let csv = cells_csv(&cells(ended), &origin);
+    atomic::write(&folder.join("starts.csv"), csv.as_bytes())?;
+    // Of the starts that found the best optimum the first, whatever the last digits say.
+    let first = ended.iter().find(|one| one.optimum == Some(1));
+    let best = first.or_else(|| best(ended).map(|i| &ended[i]));
+    let solved = ended.iter().filter(|one| one.ended.is_solved).count();
+    let seconds = batch.began.elapsed().as_secs_f64();
+    let section = Entries::default()
+        .with("command", &request.command)
+        .with("run_in", batch.run_in)
+        .with("count", ended.len())
+        .with("solved", solved)
+        .with("distinct_optima", distinct)
+        // The start whose files these are.
+        .with("best", best.map(|one| one.start.number))
+        // Wall time of all of them.
+        .with("seconds", seconds)
+        .with_each("each", ended.iter().map(StartEnd::entries));
+    if let Some(best) = best {
+        copy(&folder_of(folder, best.start.number), folder, &section)?;
+    }
+    let is_stopped = stop::requested();
+    let is_solved = solved > 0 && !is_stopped;
+    let counts = format!(
+        "{solved} of {} starts solved, {distinct} distinct {}, {seconds:.2} s, {}",
+        ended.len(),
+        if distinct == 1 { "optimum" } else { "optima" },
+        folder.display()
+    );
+    let head = match best.and_then(StartEnd::objective) {
+        Some(objective) if is_solved => {
+            format!("solved: objective {}, {counts}", significant(objective, 8))
+        }
+        Some(objective) if solved > 0 => {
+            format!(
+                "interrupted: best objective {}, {counts}",
+                significant(objective, 8)
+            )
+        }
+        _ => format!("not solved: {counts}"),
+    };
+    let mut notes = best.map_or_else(Vec::new, |best| best.notes.clone());
+    notes.extend(best.and_then(|best| lower(best, ended)));
+    for one in ended {
+        let told = one.ended.message.as_deref().map(printable);
+        let number = one.start.number;
+        notes.extend(told.map(|message| format!("start {number} failed: {message}")));
+    }
+    if is_stopped {
+        notes.push("interrupted; the files hold the best start that had ended".to_owned());
+    }
+    Ok(CommandOutput {
+        is_solved,
+        result: format!("{head}\n{}", aligned(&rows(ended))),
+        notes,
+    })
+}
+
+/// A note where a start whose goal is not held has a lower objective than the best one.
+fn lower(best: &StartEnd, ended: &[StartEnd]) -> Option<String> {
+    let objective = best.objective().filter(|_| best.ended.is_solved)?;
+    let others = ended
+        .iter()
+        .filter(|one| one.ended.is_solved && !one.is_held);
+    let mut lower = others.filter_map(|one| Some((one.start.number, one.objective()?)));
+    let (start, other) = lower.find(|(_, other)| best.is_held && *other < objective)?;
+    Some(format!(
+        "note: start {start} has the lower objective {}, but does not keep its goal or period",
+        significant(other, 8)
+    ))
+}
+
+const COLUMNS: [&str; 7] = [
+    "start",
+    "guess",
+    "status",
+    "objective",
+    "iterations",
+    "seconds",
+    "optimum",
+];
+
+/// The table as text for people.
+fn rows(ended: &[StartEnd]) -> Vec<Vec<String>> {
+    let or_dash = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
+    let row = |one: &StartEnd| {
+        vec![
+            one.start.number.to_string(),
+            one.start
+                .seed
+                .map_or("own".to_owned(), |seed| format!("seed {seed}")),
+            one.ended.summary.status.replace('_', " "),
+            or_dash(one.objective().map(|value| significant(value, 8))),
+            or_dash(one.ended.summary.iterations.map(|count| count.to_string())),
+            format!("{:.2}", one.ended.summary.seconds.total),
+            or_dash(one.optimum.map(|number| number.to_string())),
+        ]
+    };
+    let head = COLUMNS.map(str::to_owned).to_vec();
+    [head].into_iter().chain(ended.iter().map(row)).collect()
+}
+
+/// The table as `starts.csv`; cells without a value are empty.
+fn cells(ended: &[StartEnd]) -> Vec<Vec<String>> {
+    let header = [
+        "start",
+        "seed",
+        "status",
+        "objective",
+        "iterations",
+        "seconds [s]",
+        "optimum",
+    ];
+    let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:?}"));
+    let count = |value: Option<usize>| value.map_or_else(String::new, |v| v.to_string());
+    let row = |one: &StartEnd| {
+        vec![
+            one.start.number.to_string(),
+            one.start
+                .seed
+                .map_or_else(String::new, |seed| seed.to_string()),
+            one.ended.summary.status.clone(),
+            number(one.objective()),
+            count(one.ended.summary.iterations),
+            number(Some(one.ended.summary.seconds.total)),
+            count(one.optimum),
+        ]
+    };
+    let header = header.map(str::to_owned).to_vec();
+    [header].into_iter().chain(ended.iter().map(row)).collect()
+}
+
+/// Copies the files of a start, its summary last and with the table of all.
+fn copy(from: &Path, to: &Path, section: &Entries) -> Result<(), WriteError> {
+    let mut files = FileSet::in_folder(to);
+    copy_folder(from, "", to, &mut files)?;
+    let path = from.join("summary.json");
+    let summary = match fs::read_to_string(&path) {
+        Err(cause) if cause.kind() == ErrorKind::NotFound => "{}".to_owned(),
+        read => read.map_err(WriteError::at(path))?,
+    };
+    files.add("summary.json", with_section(&summary, section).as_bytes())?;
+    files.finish()
+}
+
+/// Copies all files of a folder but the summary, and those of its folders.
+fn copy_folder(
+    from: &Path,
+    within: &str,
+    to: &Path,
+    files: &mut FileSet,
+) -> Result<(), WriteError> {
+    for entry in fs::read_dir(from).map_err(WriteError::at(from))? {
+        let path = entry.map_err(WriteError::at(from))?.path();
+        let Some(name) = path.file_name() else {
+            continue;
+        };
+        let name = Path::new(within).join(name);
+        if path.is_dir() {
+            make_folder(&to.join(&name))?;
+            copy_folder(&path, &name.to_string_lossy(), to, files)?;
+        } else if name != Path::new("summary.json") {
+            let bytes = fs::read(&path).map_err(WriteError::at(&path))?;
+            files.add(name, &bytes)?;
+        }
+    }
+    Ok(())
+}
+
+/// A summary with the section of the starts at its end.
+fn with_section(summary: &str, section: &Entries) -> String {
+    let laid_out = section.laid_out();
+    let indented = laid_out.trim_end().replace('\n', "\n  ");
+    let open = summary.trim_end().trim_end_matches('}').trim_end();
+    let comma = if open.ends_with('{') { "" } else { "," };
+    format!("{open}{comma}\n  \"starts\": {indented}\n}}\n")
+}
+
+/// Relative difference of the objectives of one optimum.
+const SAME_OBJECTIVE: f64 = 1e-6;
+
+/// Difference of the voltages of one optimum, relative to the largest: weakly bounded ones are known to 1e-4.
+const SAME_VOLTAGE: f64 = 1e-3;
+
+/// Warnings about an optimum whose goal is not held, or whose period does not come back.
+const LEAVES: [&str; 2] = ["goal_not_held", "not_periodic"];
+
+/// Folder of the starts within that of the results.
+const FOLDER: &str = "starts";
+
+/// Folder of one start.
+fn folder_of(folder: &Path, start: usize) -> PathBuf {
+    folder.join(FOLDER).join(format!("{start:02}"))
+}
+
+/// A starting point of a plan.
+#[derive(Clone, Copy, Debug)]
+struct Start {
+    /// Its number, from 1.
+    number: usize,
+    /// Seed of a random guess; none for the guess of the problem itself.
+    seed: Option<u64>,
+}
+
+impl Start {
+    /// Its solve, of a problem whose guesses stand at these `places`.
+    ///
+    /// All guesses have one seed, so that inputs which motions share begin alike.
+    fn run(self, request: &CommandInput, folder: &Path, places: &[String]) -> CommandInput {
+        let mut run = CommandInput {
+            output: Some(folder_of(folder, self.number)),
+            ..request.clone()
+        };
+        if let Some(seed) = self.seed {
+            let guess = |place| format!("{place}={{\"random\":{{\"seed\":{seed}}}}}");
+            run.set.extend(places.iter().map(guess));
+        }
+        run
+    }
+}
+
+/// End of one start.
+#[derive(Debug)]
+struct StartEnd {
+    start: Start,
+    ended: Ended,
+    /// Number of the optimum it found, from 1 for the best.
+    optimum: Option<usize>,
+    /// True if nothing warns that it leaves its goal afterwards, or does not come back to its period.
+    is_held: bool,
+    voltages: Vec<f64>,
+    /// Notes on it and its motions.
+    notes: Vec<String>,
+}
+
+/// Entries that are read of the solution of a start.
+#[derive(Deserialize)]
+struct SolutionRecord {
+    voltages: BTreeMap<String, Vec<f64>>,
+}
+
+impl StartEnd {
+    /// Reads what a start left in its folder: its summary, and voltages and notes of the motions beside it.
+    ///
+    /// # Errors
+    /// It says that the input is wrong.
+    fn new(start: Start, ended: Ended, folder: &Path) -> Result<Self, CommandError> {
+        let summary = &ended.summary;
+        if summary.status == "refused" {
+            return Err(CommandError::Start {
+                start: start.number,
+                message: ended.message.unwrap_or_default(),
+            });
+        }
+        let path = folder_of(folder, start.number);
+        let own = summary.motions.iter().map(|one| path.join(&one.folder));
+        let mut folders: Vec<PathBuf> = own.collect();
+        let mut remarks = vec![(None, summary.notes.clone())];
+        for (motion, own) in summary.motions.iter().zip(&folders) {
+            let own = WrittenSummary::of_folder(own);
+            remarks.extend(own.map(|own| (Some(&motion.name), own.notes)));
+        }
+        if folders.is_empty() {
+            folders.push(path);
+        }
+        let solutions = folders.iter().filter(|_| ended.is_solved);
+        let solutions =
+            solutions.filter_map(|own| parsed::<SolutionRecord>(&own.join("solution.json")));
+        let voltages = solutions.flat_map(|one| one.voltages.into_values().flatten());
+        let mut all = remarks.iter().flat_map(|(_, own)| &own.0);
+        let notes = remarks.iter().flat_map(|(motion, own)| {
+            let name = motion.map_or_else(String::new, |name| format!("motion \"{name}\": "));
+            let lines = own.lines();
+            lines.map(move |line| format!("{name}{line}"))
+        });
+        Ok(Self {
+            optimum: None,
+            is_held: !all.any(|one| LEAVES.contains(&&*one.code)),
+            voltages: voltages.collect(),
+            notes: notes.collect(),
+            start,
+            ended,
+        })
+    }
+
+    /// Objective of its point, where there is one.
+    fn objective(&self) -> Option<f64> {
+        self.ended.summary.objective
+    }
+
+    /// Its part of the summary.
+    fn entries(&self) -> Entries {
+        let summary = &self.ended.summary;
+        Entries::default()
+            .with("start", self.start.number)
+            .with("seed", self.start.seed)
+            .with("status", &summary.status)
+            .with_some("message", self.ended.message.as_ref())
+            .with("objective", summary.objective)
+            .with("iterations", summary.iterations)
+            // Greatest violation of an equation or limit.
+            .with("infeasibility", summary.infeasibility)
+            .with("seconds", summary.seconds.total)
+            .with("optimum", self.optimum)
+    }
+
+    fn rank(&self) -> Rank {
+        match self.objective() {
+            Some(objective) if self.ended.is_solved => Rank::of_optimum(objective, self.is_held),
+            _ => Rank::of_end(self.ended.summary.infeasibility),
+        }
+    }
+
+    /// Returns true if two solutions are one optimum.
+    fn is_same(&self, other: &Self) -> bool {
+        let (Some(a), Some(b)) = (self.objective(), other.objective()) else {
+            return false;
+        };
+        let close = |a: f64, b: f64, tolerance: f64| (a - b).abs() <= tolerance;
+        let largest = self
+            .voltages
+            .iter()
+            .fold(0.0, |most: f64, v| most.max(v.abs()));
+        close(a, b, SAME_OBJECTIVE * a.abs().max(b.abs()))
+            && self.voltages.len() == other.voltages.len()
+            && self
+                .voltages
+                .iter()
+                .zip(&other.voltages)
+                .all(|(a, b)| close(*a, *b, SAME_VOLTAGE * largest))
+    }
+}
+
+/// The best start: see [`Rank`]; none where no start left a point.
+fn best(ended: &[StartEnd]) -> Option<usize> {
+    let best = (0..ended.len()).min_by(|&a, &b| ended[a].rank().compare(&ended[b].rank()))?;
+    ended[best].rank().has_point().then_some(best)
+}
+
+/// Numbers the distinct optima, the best first; returns their number.
+fn number_optima(ended: &mut [StartEnd]) -> usize {
+    let mut solved: Vec<usize> = (0..ended.len())
+        .filter(|&i| ended[i].ended.is_solved)
+        .collect();
+    solved.sort_by(|&a, &b| ended[a].rank().compare(&ended[b].rank()));
+    let mut firsts: Vec<usize> = Vec::new();
+    for i in solved {
+        let known = firsts
+            .iter()
+            .position(|&first| ended[first].is_same(&ended[i]));
+        let number = known.unwrap_or_else(|| {
+            firsts.push(i);
+            firsts.len() - 1
+        });
+        ended[i].optimum = Some(number + 1);
+    }
+    firsts.len()
 }

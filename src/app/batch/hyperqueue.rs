@@ -1,9 +1,14 @@
-//! Record of a job until all its ends are collected: its name, and the folder of each of its tasks.
+//! Solves as tasks of a HyperQueue server, which hands them to its workers.
+//!
+//! The server keeps a job when the program that submitted it is gone. The next call finds the job by its name, collects what has
+//! ended, waits for what runs, and submits only what is in no job. A task that the server begins once more, after a loss of its journal, finds
+//! its own record and does nothing.
+//!
+//! What is kept of a job until all its ends are collected is its name, and the folder of each of its tasks.
 
-use crate::app::batch::launch::{RunEnd, Said, of_status, words};
+use crate::app::batch::launch::{Batch, RunEnd, Said, of_status, words};
 use crate::app::error::CommandError;
-use crate::app::kept::overwrite_check::make_folder;
-use crate::app::kept::record::parsed;
+use crate::app::kept::record::{make_folder, parsed};
 use crate::app::request::CommandInput;
 use crate::report::atomic;
 use crate::report::atomic::WriteError;
@@ -12,18 +17,82 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
 use std::io::ErrorKind;
+use std::ops::ControlFlow;
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::time::{SystemTime, UNIX_EPOCH};
-use std::{fs, path, process};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+use std::{fs, path, process, thread};
+
+/// Least time between two questions to the server.
+const PATIENCE: Duration = Duration::from_millis(200);
+
+/// Part of the time that may pass with questions.
+const SHARE: u32 = 10;
+
+/// Runs all of a batch.
+pub(super) fn run_all(
+    batch: &Batch<'_>,
+    told: &mut dyn FnMut(usize, RunEnd) -> ControlFlow<()>,
+) -> Result<(), CommandError> {
+    let mut open: BTreeMap<usize, &CommandInput> = batch.runs.iter().enumerate().collect();
+    if let Some(job) = Job::earlier(batch.folder)? {
+        follow(batch, &job, &mut open, told)?;
+        job.forget();
+    }
+    let commands: Vec<CommandInput> = open.values().filter_map(|run| batch.command(run)).collect();
+    if !commands.is_empty() && commands.len() == open.len() {
+        let job = Job::submit(batch.folder, &commands)?;
+        follow(batch, &job, &mut open, told)?;
+        job.forget();
+    }
+    for index in open.into_keys() {
+        // Nothing begins any more.
+        let _ = told(index, RunEnd::NOT_STARTED);
+    }
+    Ok(())
+}
+
+/// Tells how the runs end that are tasks of a job, and strikes them off; those that were cancelled stay.
+fn follow(
+    batch: &Batch<'_>,
+    job: &Job,
+    open: &mut BTreeMap<usize, &CommandInput>,
+    told: &mut dyn FnMut(usize, RunEnd) -> ControlFlow<()>,
+) -> Result<(), CommandError> {
+    let mut left = job.tasks_of(open);
+    let mut is_cancelled = false;
+    while !left.is_empty() {
+        let asked = Instant::now();
+        let mut is_over = !batch.may_go_on();
+        for task in job.tasks()? {
+            let Some(&index) = left.get(&task.id).filter(|_| task.has_ended()) else {
+                continue;
+            };
+            left.remove(&task.id);
+            let Some(end) = task.end(&job.standard_error(task.id)) else {
+                continue;
+            };
+            open.remove(&index);
+            is_over |= told(index, end).is_break();
+        }
+        if is_over && !is_cancelled {
+            job.cancel()?;
+            is_cancelled = true;
+        }
+        if !left.is_empty() {
+            thread::sleep(PATIENCE.max(SHARE * asked.elapsed()));
+        }
+    }
+    Ok(())
+}
 
 /// Folder within that of the results.
 const FOLDER: &str = "hyperqueue";
 
 /// A job that the server has.
 #[derive(Debug)]
-pub(super) struct Job {
+struct Job {
     /// Its number at the server.
     id: String,
     /// The folder of its files.
@@ -44,7 +113,7 @@ impl Job {
     ///
     /// # Errors
     /// The server does not answer.
-    pub(super) fn earlier(folder: &Path) -> Result<Option<Self>, CommandError> {
+    fn earlier(folder: &Path) -> Result<Option<Self>, CommandError> {
         let files = folder.join(FOLDER);
         let Some(kept) = parsed::<Kept>(&files.join("job.json")) else {
             return Ok(None);
@@ -60,7 +129,7 @@ impl Job {
     ///
     /// # Errors
     /// A file cannot be written, or the server refuses the job.
-    pub(super) fn submit(folder: &Path, commands: &[CommandInput]) -> Result<Self, CommandError> {
+    fn submit(folder: &Path, commands: &[CommandInput]) -> Result<Self, CommandError> {
         let files = folder.join(FOLDER);
         make_folder(&files)?;
         let since = SystemTime::now().duration_since(UNIX_EPOCH);
@@ -90,7 +159,7 @@ impl Job {
     }
 
     /// The tasks of runs that are still open, and the index of their run.
-    pub(super) fn tasks_of(&self, open: &BTreeMap<usize, &CommandInput>) -> BTreeMap<usize, usize> {
+    fn tasks_of(&self, open: &BTreeMap<usize, &CommandInput>) -> BTreeMap<usize, usize> {
         let folders = self.kept.folders.iter().enumerate();
         let tasks: BTreeMap<&Path, usize> = folders.map(|(i, path)| (path.as_path(), i)).collect();
         let of = |(&index, run): (&usize, &&CommandInput)| {
@@ -100,7 +169,7 @@ impl Job {
     }
 
     /// Returns the tasks as the server reports them.
-    pub(super) fn tasks(&self) -> Result<Vec<Task>, CommandError> {
+    fn tasks(&self) -> Result<Vec<Task>, CommandError> {
         let mut answer = ask(&["task", "list", &self.id])?;
         let tasks = answer.get_mut(&self.id).map(Value::take);
         let tasks = tasks.and_then(|tasks| serde_json::from_value(tasks).ok());
@@ -108,17 +177,17 @@ impl Job {
     }
 
     /// The file of the standard error of a task.
-    pub(super) fn standard_error(&self, task: usize) -> PathBuf {
+    fn standard_error(&self, task: usize) -> PathBuf {
         self.files.join(format!("{task}.txt"))
     }
 
     /// Ends what runs and begins nothing more.
-    pub(super) fn cancel(&self) -> Result<(), CommandError> {
+    fn cancel(&self) -> Result<(), CommandError> {
         tell(&["job", "cancel", &self.id])
     }
 
     /// Removes the record: all is collected.
-    pub(super) fn forget(self) {
+    fn forget(self) {
         fs::remove_dir_all(&self.files).ok();
     }
 }
@@ -149,9 +218,9 @@ fn line(command: &CommandInput) -> Result<String, CommandError> {
 
 /// Task as the server reports it.
 #[derive(Debug, Deserialize)]
-pub(super) struct Task {
+struct Task {
     /// Its number in the job.
-    pub(super) id: usize,
+    id: usize,
     state: String,
     /// Reason why it failed.
     #[serde(default)]
@@ -160,12 +229,12 @@ pub(super) struct Task {
 
 impl Task {
     /// Returns true if it has ended for good.
-    pub(super) fn has_ended(&self) -> bool {
+    fn has_ended(&self) -> bool {
         !matches!(self.state.as_str(), "waiting" | "running")
     }
 
     /// Returns its end, with what it wrote to standard error in the file `standard_error`; none where it was cancelled.
-    pub(super) fn end(&self, standard_error: &Path) -> Option<RunEnd> {
+    fn end(&self, standard_error: &Path) -> Option<RunEnd> {
         let words = fs::read_to_string(standard_error).unwrap_or_default();
         let said = match (self.state.as_str(), self.exit_status()) {
             ("finished", _) => Said::Solved,
@@ -193,7 +262,7 @@ const PROGRAM: &str = "hq";
 ///
 /// # Errors
 /// There is none, or the command `hq` is not there.
-pub(in crate::app::batch) fn check() -> Result<(), CommandError> {
+pub(super) fn check() -> Result<(), CommandError> {
     let refused = |reason: String| CommandError::option("--engine hyperqueue", reason);
     match output(&["job", "list"]) {
         Ok(output) if output.status.success() => Ok(()),
@@ -214,7 +283,7 @@ pub(in crate::app::batch) fn check() -> Result<(), CommandError> {
 ///
 /// # Errors
 /// It does not, or not in JSON.
-pub(super) fn ask(arguments: &[impl AsRef<OsStr>]) -> Result<Value, CommandError> {
+fn ask(arguments: &[impl AsRef<OsStr>]) -> Result<Value, CommandError> {
     let output = output(arguments).map_err(|cause| CommandError::Engine(cause.to_string()))?;
     let answer = serde_json::from_slice(&output.stdout).ok();
     answer
@@ -226,7 +295,7 @@ pub(super) fn ask(arguments: &[impl AsRef<OsStr>]) -> Result<Value, CommandError
 ///
 /// # Errors
 /// The server refuses it, or there is none any more.
-pub(super) fn tell(arguments: &[impl AsRef<OsStr>]) -> Result<(), CommandError> {
+fn tell(arguments: &[impl AsRef<OsStr>]) -> Result<(), CommandError> {
     let output = output(arguments).map_err(|cause| CommandError::Engine(cause.to_string()))?;
     match output.status.success() {
         true => Ok(()),
