@@ -93,9 +93,9 @@ impl BoundaryConditions {
         let system = &free_parameters::at_guess(system, control)?;
         let analysis = control.analysis(system, h0);
         let presolved = Presolved::new(system, &analysis);
-        let coordinates = Model::choose(&presolved.system, control.coordinates)?;
-        let redundant = coordinates == Coordinates::Redundant;
-        let limits = limits_with_goal(system, control, redundant);
+        let coordinates = Model::choose(&presolved.system, control.coordinates);
+        let are_independent = coordinates.are_independent(&Graph::new(&presolved.system));
+        let limits = limits_with_goal(system, control, !are_independent);
         let analysis = Analysis {
             coordinates: Some(coordinates),
             ..with_quantities(analysis, &limits, control, system)
@@ -150,12 +150,12 @@ impl BoundaryConditions {
 }
 
 /// The path limits of a problem, and the parts of its goal and its waypoints that are equations of measures.
-fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limits {
+fn limits_with_goal(system: &System, control: &Control, measure_joints: bool) -> Limits {
     let length = Length {
         h: control.duration.first() / control.intervals as f64,
         is_free: matches!(control.duration, Duration::Free { .. }),
     };
-    let mut limits = Limits::new(&control.limits, system, redundant, length);
+    let mut limits = Limits::new(&control.limits, system, measure_joints, length);
     match &control.goal {
         BoundaryState::Markers {
             places,
@@ -170,7 +170,7 @@ fn limits_with_goal(system: &System, control: &Control, redundant: bool) -> Limi
             add_orientations(&mut limits, system, orientations, When::Goal, "goal");
         }
         goal @ BoundaryState::JointAngles { angles, .. }
-            if redundant && !all_joints_given(system, goal) =>
+            if measure_joints && !all_joints_given(system, goal) =>
         {
             for (&joint, &near) in angles {
                 let name = format!("goal of {}", system.joints[joint].name);
@@ -236,7 +236,6 @@ fn coordinates_at_goal(
     control: &Control,
 ) -> Result<(Vec<Option<f64>>, Option<Equilibrium>), BoundaryError> {
     let n = model.coordinate_count();
-    let redundant = model.coordinates == Coordinates::Redundant;
     let goal = &control.goal;
     let mut given = vec![None; n];
     match goal {
@@ -254,7 +253,7 @@ fn coordinates_at_goal(
             });
             return Ok((given, Some(rest)));
         }
-        BoundaryState::JointAngles { angles, .. } if !redundant => {
+        BoundaryState::JointAngles { angles, .. } if model.has_independent_joints() => {
             for (&joint, &value) in angles {
                 if let Some(c) = model.joint_readings[joint].coordinate {
                     given[c] = Some(value);

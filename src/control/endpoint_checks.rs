@@ -11,7 +11,7 @@ use crate::dynamics::muscle_beyond_law;
 use crate::energy::{Energy, OutsideBox, SquaredDistance};
 use crate::functional::Sample;
 use crate::math::{Local, significant};
-use crate::model::{Coordinates, Model, Of, Quantity, Region, Role, Time, What};
+use crate::model::{Model, Of, Quantity, Region, Role, Time, What};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -171,9 +171,7 @@ impl<'a> End<'a> {
         let of_gauge = || {
             if !self.known.iter().all(|known| *known) {
                 let coordinate = self.model.joint_readings[joint].coordinate?;
-                let is_known =
-                    self.model.coordinates == Coordinates::Reduced && self.known[coordinate];
-                return is_known.then(|| self.instant.z[coordinate]);
+                return self.known[coordinate].then(|| self.instant.z[coordinate]);
             }
             let mut instant = self.instant.clone();
             self.model.action.map.place(&mut instant);

@@ -28,8 +28,8 @@ const OUTSIDE_BOX: f64 = 3.0;
 const TIMES: [At; 3] = [At::Start, At::Middle, At::End];
 
 impl Limits {
-    /// The path limits of a problem. Joint limits become measures only where `measure_joints`; in joint coordinates they are bounds of
-    /// variables.
+    /// The path limits of a problem. Joint limits become measures only where `measure_joints`; in independent joint coordinates they are
+    /// bounds of variables.
     pub fn new(limits: &[Limit], system: &System, measure_joints: bool, length: Length) -> Self {
         let mut out = Self::default();
         for limit in limits {

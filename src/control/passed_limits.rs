@@ -126,8 +126,8 @@ fn along(
 ) -> Option<f64> {
     // An angle as it has turned, whatever the branch that a measure would take.
     if let (What::Joint { joint, .. }, false) = (&bounded.quantity.what, bounded.quantity.is_step())
+        && let Some(own) = model.joint_readings[*joint].coordinate
     {
-        let own = model.joint_readings[*joint].coordinate?;
         return Some(motion.z[k][own]);
     }
     value(model, place, &bounded.quantity, motion, k).map(|(value, _)| value)

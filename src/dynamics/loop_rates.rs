@@ -33,6 +33,8 @@ use nalgebra::{DMatrix, DVector, SVD};
 const OPEN: f64 = 1e-9;
 /// Singular values of Jᵀ D below this part of the greatest belong to named rates that follow from the others.
 const DEPENDENT: f64 = 1e-10;
+/// Number of rates of a body.
+const BODY: usize = 12;
 /// Corrections of rates by squares of gradients, each with half of the digits.
 const CORRECTIONS: usize = 3;
 
@@ -56,20 +58,16 @@ pub fn rates_in_loops(
     kinetic.assemble(&mut instant);
     let mut prescribed = vec![0.0; rates.len()];
     model.prescribe_rates(0.0, &mut prescribed);
-    let mut problem = Problem {
-        named: of_joints(model, &mut instant, joints),
-        wanted: DVector::from_iterator(joints.len(), joints.iter().map(|(_, rate)| *rate)),
+    let named = Named { joints, bodies };
+    let mut wanted = named.at(model, &mut instant, &rates);
+    let given = wanted.iter_mut().zip(joints);
+    given.for_each(|(wanted, &(_, rate))| *wanted = rate);
+    let problem = Problem {
+        named: named.gradients(model, &mut instant, wanted.len()),
+        wanted: DVector::from_vec(wanted),
         prescribed: DVector::from_vec(prescribed),
         carried: DVector::from_vec(rates),
     };
-    let joints = joints.iter().map(|&(j, _)| &model.system.joints[j].name);
-    let mut names: Vec<&String> = joints.collect();
-    for &body in bodies {
-        for coordinate in model.coordinates_of_body(body) {
-            problem.keep(coordinate);
-            names.push(&model.system.bodies[body].name);
-        }
-    }
     let exact = problem.by_factors(&mut kinetic, model.action.map.unknowns());
     let found = exact.filter(|found| problem.gaps(&kinetic, found).amax() <= OPEN * found.amax());
     let found = found.or_else(|| problem.by_squares(&kinetic));
@@ -82,7 +80,7 @@ pub fn rates_in_loops(
     let constraints = model.variables.with(Role::Multiplier);
     Err(match constraints.get(worst) {
         Some(constraint) => constraint.name.clone(),
-        None => names[worst - constraints.len()].clone(),
+        None => named.name(model, worst - constraints.len()),
     })
 }
 
@@ -98,16 +96,6 @@ struct Problem {
 }
 
 impl Problem {
-    /// Names the rate that a coordinate has in w.
-    fn keep(&mut self, coordinate: usize) {
-        let count = self.wanted.len();
-        let named = std::mem::replace(&mut self.named, DMatrix::zeros(0, 0));
-        self.named = named.insert_column(count, 0.0);
-        self.named[(coordinate, count)] = 1.0;
-        let wanted = std::mem::replace(&mut self.wanted, DVector::zeros(0));
-        self.wanted = wanted.push(self.carried[coordinate]);
-    }
-
     /// v by the factors of the bordered masses; `None` where these have no inverse.
     fn by_factors(&self, kinetic: &mut Kinetic<'_>, unknowns: usize) -> Option<DVector<f64>> {
         kinetic.factor()?;
@@ -176,18 +164,47 @@ impl Problem {
     }
 }
 
-/// The gradients of the coordinates of joints, whose rates are linear in those of the coordinates.
-fn of_joints(model: &Model, instant: &mut Configuration, joints: &[(usize, f64)]) -> DMatrix<f64> {
-    let n = model.coordinate_count();
-    let mut all = DMatrix::zeros(n, joints.len());
-    for i in 0..n {
+/// What is named: joints with their rates, and bodies, which keep theirs.
+struct Named<'a> {
+    joints: &'a [(usize, f64)],
+    bodies: &'a [usize],
+}
+
+impl Named<'_> {
+    /// Their rates at a placed instant with rates of the coordinates, in which they are linear.
+    fn at(&self, model: &Model, instant: &mut Configuration, rates: &[f64]) -> Vec<f64> {
         instant.l.fill(0.0);
-        instant.l[i] = 1.0;
-        for (k, &(joint, _)) in joints.iter().enumerate() {
-            all[(i, k)] = model.joint_rate(joint, instant);
+        instant.l[..rates.len()].copy_from_slice(rates);
+        let joints = self.joints.iter();
+        let joints = joints.map(|&(joint, _)| model.joint_rate(joint, instant));
+        let bodies = self.bodies.iter();
+        let bodies = bodies.flat_map(|&body| model.rates_of_body(body, instant));
+        joints.chain(bodies).collect()
+    }
+
+    /// The derivatives of their rates, a column for each.
+    fn gradients(&self, model: &Model, instant: &mut Configuration, count: usize) -> DMatrix<f64> {
+        let n = model.coordinate_count();
+        let mut all = DMatrix::zeros(n, count);
+        let mut unit = vec![0.0; n];
+        for (i, mut row) in all.row_iter_mut().enumerate() {
+            unit[i] = 1.0;
+            row.copy_from_slice(&self.at(model, instant, &unit));
+            unit[i] = 0.0;
+        }
+        all
+    }
+
+    /// The joint or body of a rate.
+    fn name(&self, model: &Model, rate: usize) -> String {
+        match self.joints.get(rate) {
+            Some(&(joint, _)) => model.system.joints[joint].name.clone(),
+            None => {
+                let body = self.bodies[(rate - self.joints.len()) / BODY];
+                model.system.bodies[body].name.clone()
+            }
         }
     }
-    all
 }
 
 /// Singular values below this part of the greatest are none.

@@ -1,6 +1,7 @@
 //! The analysis of a system, as far as it decides which terms the model needs.
 
 use crate::model::constants::constant::{Constant, Parameter};
+use crate::model::presolve::graph::Graph;
 use crate::model::quantities::quantity::Quantity;
 use crate::model::system::maxwell::Response;
 use std::collections::BTreeSet;
@@ -9,7 +10,7 @@ use thiserror::Error;
 /// Coordinates in which a problem is solved.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Coordinates {
-    /// Independent joint coordinates; joints form a tree, and what no joint connects to the ground floats.
+    /// Joint coordinates of a spanning tree, with multipliers of the joints that close loops; what no joint connects to the ground floats.
     Reduced,
     /// Directors with multipliers; any graph of bodies and joints.
     Redundant,
@@ -22,6 +23,11 @@ impl Coordinates {
             Self::Reduced => "reduced",
             Self::Redundant => "redundant",
         }
+    }
+
+    /// Returns true if no constraint joins the coordinates of the joints of a graph.
+    pub(crate) fn are_independent(self, graph: &Graph) -> bool {
+        self == Self::Reduced && graph.loops().is_empty()
     }
 
     /// Returns the coordinates that a word in files names.
@@ -99,14 +105,6 @@ impl Analysis {
 /// A system does not permit the analysis.
 #[derive(Clone, Debug, Error, PartialEq)]
 pub enum ModelError {
-    /// Reduced coordinates need a tree.
-    #[error(
-        "reduced coordinates need joints that form a tree, but joint \"{joint}\" closes a loop; choose \"coordinates\": \"redundant\""
-    )]
-    NoTree {
-        /// The joint that closes a loop.
-        joint: String,
-    },
     /// A loop is closed in the reference configuration only.
     #[error(
         "the joints that close loops ({joints}) contradict each other along the motion: places and axes leave a gap of {gap:.1e} (rad, or of the length of the system), expected none; write them with more digits, as all axes of a plane linkage along one direction, or use spherical joints"

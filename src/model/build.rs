@@ -40,7 +40,7 @@ impl Model {
     /// Without a choice the coordinates are reduced where the joints form a tree.
     ///
     /// # Errors
-    /// Reduced coordinates were asked for and do not exist.
+    /// A loop is closed in the reference only, or an element of a mesh is inverted.
     pub fn new(
         system: System,
         coordinates: Option<Coordinates>,
@@ -58,7 +58,7 @@ impl Model {
     /// Builds the model of the terms that an analysis needs, and of no others.
     ///
     /// # Errors
-    /// Reduced coordinates were asked for and do not exist.
+    /// As of [`new`](Self::new).
     pub fn for_analysis(system: System, analysis: Analysis) -> Result<Self, ModelError> {
         let presolved = Presolved::new(&system, &analysis);
         Self::of_presolved(system, analysis, presolved)
@@ -67,7 +67,7 @@ impl Model {
     /// Builds the same model from what remains of the system, which depends neither on coordinates nor on quantities of the analysis.
     ///
     /// # Errors
-    /// Reduced coordinates were asked for and do not exist.
+    /// As of [`new`](Self::new).
     pub fn of_presolved(
         system: System,
         analysis: Analysis,
@@ -77,7 +77,7 @@ impl Model {
         let reached = reached(&system, &analysis, &inputs);
         let solids = blocks(&mut presolved);
         let rest = &presolved.system;
-        let coordinates = Self::choose(rest, analysis.coordinates)?;
+        let coordinates = Self::choose(rest, analysis.coordinates);
         let (graph, reference) = (Graph::new(rest), poses(rest));
         let mut vectors = Vectors::default();
         let mut variables = interval_variables(&inputs, &system, &analysis);
@@ -93,7 +93,7 @@ impl Model {
         let internals =
             Internals::new(&system, &presolved, &analysis, coordinates, &graph, &blocks);
         let size = length(rest, &blocks.nodes);
-        let loops = Loops::new(coordinates, rest, &graph, &reference, size)?;
+        let loops = Loops::new(rest, &graph, &reference, size)?;
         let spans = spans(&system, &presolved, &reference, &mut vectors);
         let construction = Construction {
             system: &system,
@@ -132,11 +132,11 @@ impl Model {
             nodes: blocks.nodes,
             node_names: blocks.names,
             prescribed: prescribed::prescribed(&system, &presolved, &internals),
+            joint_readings: Self::joint_readings(&system, &presolved, &internals),
             internals,
             spans,
             markers: measures.markers,
             measured: measures.places,
-            joint_readings: Self::joint_readings(&system, &presolved),
             multiplier_time: analysis.interval,
             graph,
             reference,
@@ -150,30 +150,27 @@ impl Model {
     }
 
     /// Returns the readings of the joint coordinates of the scene from the poses of its bodies.
-    fn joint_readings(system: &System, presolved: &Presolved) -> Vec<JointReading> {
+    fn joint_readings(
+        system: &System,
+        presolved: &Presolved,
+        internals: &Internals,
+    ) -> Vec<JointReading> {
         let reference = poses(system);
-        let coordinates = presolved.system.joint_coordinates();
         let reading = |(j, joint)| {
-            let coordinate = presolved.joint(j).and_then(|kept| coordinates[kept]);
+            let kept = presolved.joint(j);
+            let coordinate = kept.and_then(|kept| internals.joint_coordinate(kept));
             JointReading::new(joint, coordinate, &reference)
         };
         system.joints.iter().enumerate().map(reading).collect()
     }
 
     /// The coordinates of a system: those asked for, or reduced where the joints form a tree.
-    ///
-    /// # Errors
-    /// Reduced coordinates were asked for and do not exist.
-    pub fn choose(
-        system: &System,
-        coordinates: Option<Coordinates>,
-    ) -> Result<Coordinates, ModelError> {
-        match (coordinates, Graph::new(system).obstacle(system)) {
-            (Some(Coordinates::Reduced), Some(obstacle)) => Err(obstacle),
-            (Some(choice), _) => Ok(choice),
-            (None, Some(_)) => Ok(Coordinates::Redundant),
-            (None, None) => Ok(Coordinates::Reduced),
-        }
+    pub fn choose(system: &System, coordinates: Option<Coordinates>) -> Coordinates {
+        let is_tree = || Graph::new(system).loops().is_empty();
+        coordinates.unwrap_or_else(|| match is_tree() {
+            true => Coordinates::Reduced,
+            false => Coordinates::Redundant,
+        })
     }
 }
 

@@ -141,7 +141,7 @@ pub struct Freedom<'m> {
 /// Joint coordinate `i` of a presolved system.
 fn freedom<'m>(system: &'m System, graph: &Graph, i: usize) -> Freedom<'m> {
     let mut at = i;
-    for joint in &system.joints {
+    for (_, joint) in graph.in_order(system) {
         let (screws, _) = joint.kind.screws();
         if let Some(&screw) = screws.get(at) {
             return Freedom {

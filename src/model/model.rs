@@ -18,6 +18,7 @@ use crate::model::system::joints::{JointReading, Prescribed};
 use crate::model::system::{Body, InputKind, Source, System};
 use crate::model::terms::{LeftOut, Present};
 use crate::sparse::Symmetry;
+use std::cell::OnceCell;
 
 /// A system with its coordinates, vectors and terms: constant during a run.
 #[derive(Debug)]
@@ -191,10 +192,13 @@ impl Model {
         }
     }
 
-    /// [Effects](System::joint_pulls) of forces on coordinates that are no places: internal ones act by constraints, or within a muscle.
+    /// [Effects](crate::model::system::Joint::pulls) of forces on coordinates that are no places: internal ones act by constraints, or within a muscle.
     pub fn pulls(&self) -> Vec<[Vector; 2]> {
         match self.coordinates {
-            Coordinates::Reduced => self.presolved.system.joint_pulls(),
+            Coordinates::Reduced => {
+                let joints = self.graph.in_order(&self.presolved.system);
+                joints.flat_map(|(_, joint)| joint.pulls()).collect()
+            }
             Coordinates::Redundant => Vec::new(),
         }
     }
@@ -296,20 +300,14 @@ impl Model {
 
     /// Joint coordinates of an instant.
     pub fn joints(&self, instant: &Configuration, near: &[f64]) -> Vec<f64> {
-        match self.coordinates {
-            Coordinates::Reduced => self
-                .joint_readings
-                .iter()
-                .map(|g| g.coordinate.map_or(0.0, |c| instant.z[c]))
-                .collect(),
-            Coordinates::Redundant => {
-                let mut joints = self.read_joints(&self.poses(instant), near);
-                for (coordinate, joint) in self.internal_joints() {
-                    joints[joint] = instant.z[coordinate];
-                }
-                joints
-            }
-        }
+        let poses = OnceCell::new();
+        let readings = self.joint_readings.iter().zip(near).enumerate();
+        let joints = readings.map(|(j, (reading, &near))| match reading.coordinate {
+            Some(coordinate) => instant.z[coordinate],
+            None if self.presolved.joint(j).is_none() => 0.0,
+            None => reading.read(poses.get_or_init(|| self.poses(instant)), near),
+        });
+        joints.collect()
     }
 
     /// Poses of all bodies of the scene at an instant.

@@ -13,7 +13,7 @@ use crate::control::{
 };
 use crate::dynamics::{DiscreteTrajectory, Start};
 use crate::math::Signal;
-use crate::model::{Coordinates, Model, Role, What};
+use crate::model::{Model, Role, What};
 use crate::nlp::Nlp;
 use crate::sensitivity::conditions::{Direction, NoSensitivity, Side};
 use crate::sensitivity::kernel::Kernel;
@@ -174,10 +174,10 @@ impl<'a> Directions<'a> {
         Ok(self.of_held(self.by_rest(end, parameters + place)))
     }
 
-    /// The coordinate of the model that is that of a joint; none in redundant coordinates.
+    /// The coordinate of the model that is that of a joint; none where constraints join coordinates.
     fn coordinate(&self, joint: usize) -> Option<usize> {
         let reading = &self.model().joint_readings[joint];
-        let is_one = self.model().coordinates == Coordinates::Reduced;
+        let is_one = self.model().has_independent_joints();
         reading.coordinate.filter(|_| is_one)
     }
 

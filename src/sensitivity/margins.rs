@@ -5,10 +5,12 @@
 //! A bound that is not reached is at the distance s, a multiplier of one that is has the size s. Either becomes zero at the change −s/ṡ, where ṡ is
 //! its derivative.
 
+use crate::coordinates::Configuration;
 use crate::model::Model;
 use crate::nlp::Nlp;
 use crate::sensitivity::conditions::{Conditions, Direction, Place, Side};
 use nalgebra::Vector3;
+use std::collections::BTreeMap;
 
 /// A bound of this side that ends a range, or, without one, the multiplier of that which is reached.
 #[derive(Clone, Copy, Debug)]
@@ -133,14 +135,21 @@ fn moved_by(list: &[(usize, Side, f64)], i: usize, side: Side) -> f64 {
 /// Coordinates with derivatives that are not zero.
 type Slopes = Vec<(usize, f64)>;
 
-/// Derivatives by marker and axis.
-pub(super) struct MarkerSlopes(Vec<[Slopes; 3]>);
+/// Derivatives of the places of markers, by marker and axis, and of joint coordinates, by joint of one coordinate.
+pub(super) struct PartSlopes {
+    markers: Vec<[Slopes; 3]>,
+    joints: BTreeMap<usize, Slopes>,
+}
 
-impl MarkerSlopes {
+impl PartSlopes {
     /// Derivatives at an instant with unknowns z.
     pub(super) fn new(model: &Model, z: &[f64]) -> Self {
         let map = &model.action.map;
-        let instant = map.placed(z);
+        let mut instant = map.placed(z);
+        let joints = model.system.joints.iter().enumerate();
+        let joints = joints.filter(|(_, joint)| joint.has_coordinate());
+        let joints = joints.map(|(j, _)| (j, of_joint(model, j, &mut instant)));
+        let joints = joints.collect();
         let mut row = vec![0.0; map.unknowns()];
         let mut slopes = |vector: usize, axis: usize| {
             let mut along = Vector3::zeros();
@@ -152,20 +161,58 @@ impl MarkerSlopes {
             slopes.filter(|(_, slope)| *slope != 0.0).collect()
         };
         let mut of = |&vector: &usize| [0, 1, 2].map(|axis| slopes(vector, axis));
-        Self(model.markers.iter().map(&mut of).collect())
+        Self {
+            markers: model.markers.iter().map(&mut of).collect(),
+            joints,
+        }
     }
 
     /// Those of the place of a marker along an axis.
-    pub(super) fn of(&self, marker: usize, axis: usize) -> &[(usize, f64)] {
-        &self.0[marker][axis]
+    pub(super) fn marker(&self, marker: usize, axis: usize) -> &[(usize, f64)] {
+        &self.markers[marker][axis]
+    }
+
+    /// Those of the coordinate of a joint, which is its only one.
+    pub(super) fn joint(&self, joint: usize) -> Option<&[(usize, f64)]> {
+        self.joints.get(&joint).map(Vec::as_slice)
     }
 
     /// Changes of the places with those of the coordinates.
-    pub(super) fn along(&self, changes: &[f64]) -> Vec<Vector3<f64>> {
-        let change = |slopes: &Slopes| slopes.iter().map(|&(c, slope)| slope * changes[c]).sum();
+    pub(super) fn markers_along(&self, changes: &[f64]) -> Vec<Vector3<f64>> {
+        let change = |slopes: &Slopes| along(slopes, changes);
         let place = |axes: &[Slopes; 3]| Vector3::from(axes.each_ref().map(change));
-        self.0.iter().map(place).collect()
+        self.markers.iter().map(place).collect()
     }
+
+    /// Changes of the joint coordinates.
+    pub(super) fn joints_along(&self, changes: &[f64]) -> Vec<f64> {
+        let change = |slopes: &Slopes| match slopes.is_empty() {
+            true => 0.0,
+            false => along(slopes, changes),
+        };
+        self.joints.values().map(change).collect()
+    }
+}
+
+fn along(slopes: &Slopes, changes: &[f64]) -> f64 {
+    slopes.iter().map(|&(c, slope)| slope * changes[c]).sum()
+}
+
+/// Derivatives of the coordinate of a joint at a placed instant; none of one that does not move.
+fn of_joint(model: &Model, joint: usize, instant: &mut Configuration) -> Slopes {
+    if let Some(own) = model.joint_readings[joint].coordinate {
+        return vec![(own, 1.0)];
+    }
+    if model.presolved.joint(joint).is_none() {
+        return Vec::new();
+    }
+    let mut slope = |i: usize| {
+        instant.l.fill(0.0);
+        instant.l[i] = 1.0;
+        model.joint_rate(joint, instant)
+    };
+    let slopes = (0..model.coordinate_count()).map(|i| (i, slope(i)));
+    slopes.filter(|(_, slope)| *slope != 0.0).collect()
 }
 
 /// The change at which other bounds are reached, in one direction.

@@ -8,11 +8,11 @@
 
 use crate::control::problem::{BoundaryState, Control, OutcomeOf, Varied, VariedOf};
 use crate::control::{Column, Solution, Transcription};
-use crate::model::{Coordinates, Model, Role, System, Time};
+use crate::model::{Role, System, Time};
 use crate::sensitivity::conditions::{Conditions, Direction, NoSensitivity, Places};
 use crate::sensitivity::directions::Directions;
 use crate::sensitivity::kernel::{Derivative, Kernel, Outcome};
-use crate::sensitivity::margins::{MarkerSlopes, Range};
+use crate::sensitivity::margins::{PartSlopes, Range};
 use crate::sensitivity::with_parameters::{Mapped, Opened};
 use nalgebra::Vector3;
 use std::mem;
@@ -59,13 +59,13 @@ pub fn sensitivities(
     let opened = Opened::new(system, control, motion)?;
     let mut of = Differentiated::new(&opened, &control.start)?;
     let instants = opened.initial.discrete.z.iter();
-    let markers = instants.map(|z| MarkerSlopes::new(&opened.model, z));
-    let markers: Vec<MarkerSlopes> = markers.collect();
+    let slopes = instants.map(|z| PartSlopes::new(&opened.model, z));
+    let slopes: Vec<PartSlopes> = slopes.collect();
     let (mut list, mut refused) = (Vec::new(), Vec::new());
     let directions = mem::take(&mut of.directions);
     for (varied, direction) in opened.control.varied.iter().zip(directions) {
         match direction.and_then(|direction| of.kernel.along(&direction)) {
-            Ok(derivative) => list.push(of.sensitivity(varied, derivative, &markers)),
+            Ok(derivative) => list.push(of.sensitivity(varied, derivative, &slopes)),
             Err(reason) => refused.push((varied.name.clone(), reason)),
         }
     }
@@ -111,7 +111,7 @@ impl<'a> Differentiated<'a> {
         &self,
         varied: &Varied,
         derivative: Derivative,
-        markers: &[MarkerSlopes],
+        slopes: &[PartSlopes],
     ) -> Sensitivity {
         let (model, program) = (&self.opened.model, self.kernel.program());
         let intervals = program.intervals();
@@ -139,14 +139,15 @@ impl<'a> Differentiated<'a> {
                 _ => {}
             }
         }
-        let of_instants = markers.iter().zip(&coordinates);
-        let of_instants = of_instants.map(|(slopes, row)| slopes.along(row));
+        let of_instants = || slopes.iter().zip(&coordinates);
+        let of_joints = of_instants().map(|(slopes, row)| slopes.joints_along(row));
+        let of_markers = of_instants().map(|(slopes, row)| slopes.markers_along(row));
         let multiplier = |&row: &usize| derivative.multipliers[row] * program.row_scale(row);
         let has_meaning = |value: f64| has_meaning(varied, value);
         Sensitivity {
             objective: derivative.objective,
-            joints: joints(model, &coordinates),
-            markers: of_instants.filter(|_| !is_place(varied)).collect(),
+            joints: of_joints.collect(),
+            markers: of_markers.filter(|_| !is_place(varied)).collect(),
             multipliers: self.rows.iter().map(multiplier).collect(),
             varied: varied.clone(),
             range: derivative.range.while_true(varied.value, has_meaning),
@@ -175,12 +176,11 @@ impl<'a> Differentiated<'a> {
                 return Ok(out);
             }
             OutcomeOf::Joint { joint, time } => {
-                let reading = model.joint_readings.get(joint);
-                let coordinate = reading.and_then(|one| one.coordinate);
-                let is_one = model.coordinates == Coordinates::Reduced;
-                match coordinate.filter(|_| is_one) {
-                    Some(c) => (instant(time), vec![(c, 1.0)]),
-                    None => return refused("a joint is an outcome in reduced coordinates alone"),
+                let k = instant(time);
+                let slopes = PartSlopes::new(model, &opened.initial.discrete.z[k]);
+                match slopes.joint(joint) {
+                    Some(slopes) => (k, slopes.to_vec()),
+                    None => return refused("the system has no such joint of one coordinate"),
                 }
             }
             OutcomeOf::Marker { marker, axis, time } => {
@@ -193,8 +193,8 @@ impl<'a> Differentiated<'a> {
                 }
                 let k = instant(time);
                 let z = &opened.initial.discrete.z[k];
-                let slopes = MarkerSlopes::new(model, z);
-                (k, slopes.of(marker, axis).to_vec())
+                let slopes = PartSlopes::new(model, z);
+                (k, slopes.marker(marker, axis).to_vec())
             }
             _ => (0, Vec::new()),
         };
@@ -243,21 +243,6 @@ fn has_meaning(varied: &Varied, value: f64) -> bool {
         }
         None => varied.of != VariedOf::Duration || value > 0.0,
     }
-}
-
-/// Derivatives of the joint coordinates.
-fn joints(model: &Model, coordinates: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    if model.coordinates != Coordinates::Reduced {
-        return Vec::new();
-    }
-    let of = |row: &Vec<f64>| {
-        let joints = model.joint_readings.iter().zip(&model.system.joints);
-        let joints = joints.filter(|(_, joint)| joint.has_coordinate());
-        joints
-            .map(|(reading, _)| reading.coordinate.map_or(0.0, |c| row[c]))
-            .collect()
-    };
-    coordinates.iter().map(of).collect()
 }
 
 /// Part of an interval before its start that counts as its own.

@@ -8,7 +8,7 @@ use crate::control::{
     Rests, Row, Solution, Transcription, guess, rest_at,
 };
 use crate::dynamics::Equilibrium;
-use crate::model::{Coordinates, Model, Parameter, Role, System};
+use crate::model::{Model, Parameter, Role, System};
 use crate::nlp::{Multipliers, Nlp};
 use crate::sensitivity::conditions::{Held, NoSensitivity, Place};
 use crate::sensitivity::kernel::Kernel;
@@ -361,7 +361,7 @@ pub fn check(system: &System, control: &Control) -> Result<(), (String, String)>
                 "the memory of Maxwell branches at the start follows it, which is not offered"
                     .to_owned(),
             ),
-            VariedOf::StartJoint(_) if model.coordinates == Coordinates::Redundant => {
+            VariedOf::StartJoint(_) if !model.has_independent_joints() => {
                 Some("it is offered in joint coordinates, without constraints, alone".to_owned())
             }
             _ => None,

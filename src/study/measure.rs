@@ -152,7 +152,7 @@ pub fn available<'a>(
     });
     let open = points.clone().any(|point| match &point.task {
         Task::Simulate(task) => {
-            Model::choose(&point.system, task.coordinates) == Ok(Coordinates::Redundant)
+            Model::choose(&point.system, task.coordinates) == Coordinates::Redundant
         }
         _ => false,
     });

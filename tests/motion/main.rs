@@ -24,6 +24,7 @@ mod joint_stops;
 mod leakage;
 mod loads;
 mod loop_rates;
+mod loop_trees;
 mod maxwell;
 mod maxwell_limits;
 mod observe;

@@ -6,7 +6,7 @@ use crate::control::transcription::Transcription;
 use crate::control::transcription::layout::Layout;
 use crate::dynamics::DiscreteTrajectory;
 use crate::functional::ParameterOrder;
-use crate::model::{Coordinates, Model, Role, Size, Time};
+use crate::model::{Model, Role, Size, Time};
 use crate::nlp::{Bounds, Nlp};
 use std::mem;
 
@@ -166,7 +166,7 @@ impl Transcription<'_> {
         let n = self.model.coordinate_count();
         let mut lower = vec![f64::NEG_INFINITY; n];
         let mut upper = vec![f64::INFINITY; n];
-        if self.model.coordinates == Coordinates::Reduced {
+        if self.model.has_independent_joints() {
             for limit in &control.limits {
                 if let (Some(joint), None) = (limit.joint(), limit.part)
                     && let Some(c) = self.model.joint_readings[joint].coordinate

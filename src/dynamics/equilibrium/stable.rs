@@ -170,7 +170,7 @@ fn without_stiffness(
     none: &[f64],
 ) -> Option<EquilibriumError> {
     let model = statics.model;
-    if model.coordinates == Coordinates::Redundant {
+    if !model.has_independent_joints() {
         return None;
     }
     let mut aside = statics.state_without_field(start);
@@ -359,7 +359,8 @@ fn pushed(
 /// The same system in joint coordinates; `None` where the coordinates are these already, where joints close loops, and where nodes are
 /// unknowns, which are others in other coordinates.
 pub(super) fn joint_twin(model: &Model) -> Option<Model> {
-    if model.coordinates == Coordinates::Reduced || !model.solids.is_empty() {
+    let is_other = model.coordinates == Coordinates::Redundant && !model.has_loops();
+    if !is_other || !model.solids.is_empty() {
         return None;
     }
     let analysis = Analysis {

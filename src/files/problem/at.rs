@@ -8,7 +8,7 @@ use crate::files::units::quantity::{
     PhysicalQuantity, Quantity, Stress, Torque, Velocity, Voltage,
 };
 use crate::model::system::{InputKind, JointKind, Source, System, voltage_sources};
-use crate::model::{Coordinates, Graph, PartKind};
+use crate::model::{Coordinates, PartKind};
 use std::collections::BTreeMap;
 use std::ops::Deref;
 use std::rc::Rc;
@@ -209,14 +209,6 @@ impl<'a> At<'a> {
             Ok((joint, at.of_joint(joint, written)?))
         })
     }
-
-    /// Coordinates of this task as they are written.
-    pub(crate) fn coordinates(&self, spec: Option<CoordinatesSpec>) -> Result<Option<Coordinates>> {
-        let is_tree = || Graph::new(self.system).loops().is_empty();
-        refuse!(if spec == Some(CoordinatesSpec::Reduced) && !is_tree(), self.key("coordinates");
-            found "\"reduced\", though the joints close a loop", expected "\"redundant\"");
-        Ok(spec.map(Into::into))
-    }
 }
 
 /// Declares how parts are found whose names stand at a place.
@@ -245,7 +237,7 @@ named_parts! {
 read_objects! {
     /// Coordinates in which a problem is solved; reduced where the joints form a tree, unless written.
     pub enum CoordinatesSpec: Coordinates {
-        /// Independent joint coordinates.
+        /// Joint coordinates, with multipliers of joints that close loops.
         Reduced,
         /// Directors with multipliers.
         Redundant,

@@ -53,7 +53,7 @@ fn equilibrium(spec: &EquilibriumSpec, at: &At<'_>) -> Result<Task> {
     for (source, load) in loads(&map, &at.key("loads"))? {
         voltages[source] = load.at(0.0);
     }
-    let coordinates = at.coordinates(spec.coordinates)?;
+    let coordinates = spec.coordinates.map(Into::into);
     if let Some(points) = spec.path {
         at.key("path").count(points, "point", MOST_POINTS)?;
     }

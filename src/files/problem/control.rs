@@ -116,7 +116,7 @@ pub(crate) fn control(
         objective,
         limits,
         waypoints,
-        coordinates: at.coordinates(spec.coordinates)?,
+        coordinates: spec.coordinates.map(Into::into),
         guess,
         solver: solver(&spec.solver, &at.key("solver"))?,
     };

@@ -66,7 +66,7 @@ pub(crate) fn identification(
         recordings: recordings.collect::<Result<_, _>>()?,
         candidates: candidates.collect::<Result<_, _>>()?,
         step: at.optional("step", &spec.step, |at, step| at.positive(step))?,
-        coordinates: at.coordinates(spec.coordinates)?,
+        coordinates: spec.coordinates.map(Into::into),
     })
 }
 

@@ -35,7 +35,7 @@ pub(crate) fn simulation(spec: &SimulateSpec, at: &At<'_>) -> Result<Simulation>
         tolerance,
         start,
         voltages,
-        coordinates: at.coordinates(spec.coordinates)?,
+        coordinates: spec.coordinates.map(Into::into),
         solving: Solving {
             integrator: method,
             newton: spec

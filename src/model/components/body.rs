@@ -6,7 +6,6 @@ use crate::energy::{
 use crate::functional::{Element, Mass, VectorArg};
 use crate::kinematics::{MaterialVector, Pose};
 use crate::math::Vector;
-use crate::model::analysis::Coordinates;
 use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::construction::Construction;
@@ -139,8 +138,8 @@ pub(in crate::model) fn build_dampers(of: &Construction<'_>, terms: &mut Terms<'
         return terms.without(DAMPING, "a state of rest dissipates nothing");
     }
     let system = &of.presolved.system;
-    let joints = system.joints.iter().zip(system.joint_coordinates());
-    for ((joint, coordinate), &index) in joints.zip(&of.presolved.joints) {
+    let joints = system.joints.iter().enumerate();
+    for ((kept, joint), &index) in joints.zip(&of.presolved.joints) {
         let Some(coefficient) = joint.damping else {
             continue;
         };
@@ -149,10 +148,9 @@ pub(in crate::model) fn build_dampers(of: &Construction<'_>, terms: &mut Terms<'
             index,
             coefficient,
         };
-        match (of.coordinates, coordinate) {
-            (Coordinates::Reduced, Some(coordinate)) => damper.on_coordinate(coordinate, terms),
-            (Coordinates::Reduced, None) => {}
-            (Coordinates::Redundant, _) => damper.on_vectors(of.reference, terms),
+        match of.internals.in_tree(kept) {
+            Some(coordinate) => damper.on_coordinate(coordinate, terms),
+            None => damper.on_vectors(of.reference, terms),
         }
     }
 }

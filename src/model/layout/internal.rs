@@ -112,8 +112,8 @@ pub(crate) struct Internals {
 }
 
 impl Internals {
-    /// Those of a scene and its presolved system with its graph: redundant coordinates lack those of joints with
-    /// springs, loads or a prescribed motion. Muscles and blocks at rest remember nothing, and have the voltages of their sources.
+    /// Those of a scene and its presolved system with its graph: coordinates of joints with springs, loads or a prescribed motion that are
+    /// in no tree of joint coordinates. Muscles and blocks at rest remember nothing, and have the voltages of their sources.
     pub(crate) fn new(
         scene: &System,
         presolved: &Presolved,
@@ -125,19 +125,24 @@ impl Internals {
         let system = &presolved.system;
         let nodes = blocks.nodes.iter().flat_map(|node| node.free);
         let of_nodes = nodes.filter(|&is_free| is_free).count();
-        let mut list = Vec::new();
-        if coordinates == Coordinates::Redundant {
-            let joints = system.joints.iter().enumerate();
-            let is_loaded = |j: usize| {
-                let mut loads = scene.components.loads.iter();
-                loads.any(|load| load.on == LoadPlace::Joint(presolved.joints[j]))
-            };
-            let is_read = |joint: &Joint| {
-                joint.spring.is_some() || joint.stops.is_some() || joint.motion.is_some()
-            };
-            let needed = joints.filter(|(j, joint)| is_read(joint) || is_loaded(*j));
-            list.extend(needed.map(|(j, joint)| Internal::of_joint(j, joint)));
-        }
+        let (of_tree, of_bodies) = match coordinates {
+            Coordinates::Reduced => (
+                graph.joint_coordinates(system),
+                graph.coordinate_count(system),
+            ),
+            Coordinates::Redundant => (vec![None; system.joints.len()], 12 * system.bodies.len()),
+        };
+        let joints = system.joints.iter().enumerate();
+        let is_loaded = |j: usize| {
+            let mut loads = scene.components.loads.iter();
+            loads.any(|load| load.on == LoadPlace::Joint(presolved.joints[j]))
+        };
+        let is_read = |joint: &Joint| {
+            joint.spring.is_some() || joint.stops.is_some() || joint.motion.is_some()
+        };
+        let needed = joints.filter(|(j, joint)| is_read(joint) || is_loaded(*j));
+        let missing = needed.filter(|(j, _)| of_tree[*j].is_none());
+        let mut list: Vec<_> = missing.map(|(j, of)| Internal::of_joint(j, of)).collect();
         for (m, muscle) in scene.muscles.iter().enumerate() {
             let moves = presolved.moves(muscle);
             if analysis.of_motion && moves && muscle.fidelity == Fidelity::Lumped {
@@ -161,16 +166,17 @@ impl Internals {
                 list.extend(Internal::of_element(b, block, e));
             }
         }
-        let (of_tree, of_bodies) = match coordinates {
-            Coordinates::Reduced => (system.joint_coordinates(), graph.coordinate_count(system)),
-            Coordinates::Redundant => (vec![None; system.joints.len()], 12 * system.bodies.len()),
-        };
         Self {
             of_tree,
             first: of_bodies + of_nodes,
             of_elements,
             list,
         }
+    }
+
+    /// The coordinate of a joint in the tree; redundant coordinates have none.
+    pub(crate) fn in_tree(&self, joint: usize) -> Option<usize> {
+        self.of_tree[joint]
     }
 
     /// The vector that has the coordinate of a joint in its first component; `None` where nothing calls for it.
@@ -182,7 +188,8 @@ impl Internals {
     pub(crate) fn joint_coordinate(&self, joint: usize) -> Option<usize> {
         let kind = InternalKind::Joint(joint);
         let internal = || self.list.iter().position(|own| own.kind == kind);
-        self.of_tree[joint].or_else(|| internal().map(|place| self.first + place))
+        self.in_tree(joint)
+            .or_else(|| internal().map(|place| self.first + place))
     }
 
     /// The vector that has an internal coordinate in its first component.

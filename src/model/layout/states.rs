@@ -14,7 +14,6 @@ use crate::model::system::circuit::Circuit;
 use crate::model::system::joints::JointCoordinate;
 use nalgebra::SVector;
 use std::collections::BTreeMap;
-use std::ops::Range;
 
 impl Model {
     /// Rates of the coordinates of the bodies at joint coordinates (by joint) with given rates, and velocities of the centre and
@@ -41,10 +40,13 @@ impl Model {
         !self.graph.free().is_empty() || joints.any(|joint| joint.kind.freedoms() > 1)
     }
 
-    /// Coordinates of the body that carries a body of the scene, in directors; none of one that does not move.
-    pub fn coordinates_of_body(&self, body: usize) -> Range<usize> {
+    /// Rates of centre and directors of the body that carries a body of the scene, at a placed instant of which `l` holds the rates of
+    /// the coordinates; none of one that does not move.
+    pub fn rates_of_body(&self, body: usize, instant: &Configuration) -> Vec<f64> {
         let carrier = self.presolved.carrier(Some(body));
-        carrier.map_or(0..0, |b| 12 * b..12 * (b + 1))
+        let rates = carrier.map(|body| self.pose_rates(instant).swap_remove(body));
+        let numbers = |rate: Pose| [rate.centre.as_slice(), rate.directors.as_slice()].concat();
+        rates.map(numbers).unwrap_or_default()
     }
 
     /// Returns true if joints close loops of bodies.
@@ -52,11 +54,16 @@ impl Model {
         !self.graph.loops().is_empty()
     }
 
+    /// Returns true if no constraint joins the coordinates of joints.
+    pub fn has_independent_joints(&self) -> bool {
+        self.coordinates.are_independent(&self.graph)
+    }
+
     /// First coordinate and coordinates at poses of the joints of several coordinates without a chart.
     fn several(&self, poses: &[Pose]) -> Vec<(usize, Vec<f64>)> {
         let mut next = 0;
         let mut list = Vec::new();
-        for joint in &self.presolved.system.joints {
+        for (_, joint) in self.graph.in_order(&self.presolved.system) {
             let values = joint.several(poses, &self.reference);
             list.extend(values.map(|values| (next, values)));
             next += joint.kind.freedoms();
@@ -141,19 +148,32 @@ impl Model {
     /// rates of the coordinates.
     pub fn joint_rate(&self, joint: usize, instant: &Configuration) -> f64 {
         let index = self.presolved.joint(joint).expect("a joint that moves");
+        let in_tree = self.internals.in_tree(index);
+        if let Some(coordinate) = in_tree {
+            return instant.l[coordinate];
+        }
+        let joint = &self.presolved.system.joints[index];
+        let coordinate = JointCoordinate::new(joint, &self.reference);
+        let poses = || self.condensed_poses(instant);
+        coordinate.map_or(0.0, |of| of.rate(&poses(), &self.pose_rates(instant)))
+    }
+
+    /// Rates of centres and directors of the presolved bodies, at a placed instant of which `l` holds the rates of the coordinates.
+    fn pose_rates(&self, instant: &Configuration) -> Vec<Pose> {
+        let count = self.presolved.system.bodies.len();
         match self.coordinates {
             Coordinates::Reduced => {
-                let coordinate = self.joint_readings[joint].coordinate;
-                instant.l[coordinate.expect("a joint of one coordinate")]
+                let mut moving = instant.clone();
+                self.action.map.along(&mut moving);
+                let tree = &moving.tree;
+                let bodies = tree.poses.iter().zip(&tree.twists).take(count);
+                let rate = |(at, [spin, origin]): (&Pose, &[Vector; 2])| Pose {
+                    centre: origin + spin.cross(&at.centre),
+                    directors: spin.cross_matrix() * at.directors,
+                };
+                bodies.map(rate).collect()
             }
-            Coordinates::Redundant => {
-                let joint = &self.presolved.system.joints[index];
-                let coordinate = JointCoordinate::new(joint, &self.reference);
-                let bodies = instant.l.chunks_exact(12);
-                let bodies = bodies.take(self.presolved.system.bodies.len());
-                let rates: Vec<Pose> = bodies.map(pose).collect();
-                coordinate.map_or(0.0, |of| of.rate(&self.condensed_poses(instant), &rates))
-            }
+            Coordinates::Redundant => instant.l.chunks_exact(12).take(count).map(pose).collect(),
         }
     }
 }

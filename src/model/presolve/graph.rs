@@ -3,9 +3,8 @@
 use crate::coordinates::{Configuration, CoordinateMap, Link, LinkKind, Tree};
 use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm};
 use crate::math::{Matrix, Vector};
-use crate::model::analysis::ModelError;
 use crate::model::system::joints::Screw;
-use crate::model::system::{JointKind, System};
+use crate::model::system::{Joint, JointKind, System};
 
 /// Joints in an order from the ground outwards, those that close loops, and bodies that nothing holds.
 #[derive(Clone, Debug)]
@@ -80,13 +79,6 @@ impl Graph {
         }
     }
 
-    /// Returns the reason why reduced coordinates do not exist, if they do not.
-    pub fn obstacle(&self, system: &System) -> Option<ModelError> {
-        let &joint = self.loops.first()?;
-        let joint = system.joints[joint].name.clone();
-        Some(ModelError::NoTree { joint })
-    }
-
     /// Returns true if the joints form a tree from the ground and have one coordinate each, or none.
     pub fn has_one_coordinate_a_joint(&self, system: &System) -> bool {
         let mut joints = system.joints.iter();
@@ -119,9 +111,7 @@ impl Graph {
 
     /// Typical sizes of the coordinates of the tree: one radian, or a length in mm.
     pub(crate) fn sizes(&self, system: &System, length: f64) -> Vec<f64> {
-        let joints = system.joints.iter().enumerate();
-        let joints = joints.filter(|(j, _)| !self.loops.contains(j));
-        let kinds = joints.map(|(_, joint)| joint.kind);
+        let kinds = self.in_order(system).map(|(_, joint)| joint.kind);
         let free = self.free.iter().map(|_| JointKind::Floating);
         let size = |screw: &Screw| match screw {
             Screw::Turn(_) => 1.0,
@@ -197,6 +187,22 @@ impl Graph {
         (map, instant)
     }
 
+    /// Joints of the tree in the order of the system, which is that of their coordinates, each with its index.
+    pub(crate) fn in_order<'s>(
+        &self,
+        system: &'s System,
+    ) -> impl Iterator<Item = (usize, &'s Joint)> {
+        let joints = system.joints.iter().enumerate();
+        joints.filter(|(j, _)| !self.loops.contains(j))
+    }
+
+    /// Coordinate of each joint that has exactly one; joints that close loops have none.
+    pub(crate) fn joint_coordinates(&self, system: &System) -> Vec<Option<usize>> {
+        let first = self.first_coordinates(system);
+        let own = |(j, first)| (self.freedoms(system, j) == 1).then_some(first);
+        first.into_iter().enumerate().map(own).collect()
+    }
+
     /// Index of the first coordinate of each joint of the tree; joints that close loops have none.
     fn first_coordinates(&self, system: &System) -> Vec<usize> {
         let mut next = 0;
@@ -225,10 +231,9 @@ impl Graph {
     /// Values of the coordinates of the tree from one value a joint; those of joints with several and of free bodies are zero.
     fn coordinates(&self, system: &System, joints: &[f64]) -> Vec<f64> {
         let mut values = vec![0.0; self.coordinate_count(system)];
-        let first = self.first_coordinates(system);
-        for (j, joint) in system.joints.iter().enumerate() {
-            if joint.has_coordinate() && !self.loops.contains(&j) {
-                values[first[j]] = joints[j];
+        for (own, &value) in self.joint_coordinates(system).into_iter().zip(joints) {
+            if let Some(own) = own {
+                values[own] = value;
             }
         }
         values

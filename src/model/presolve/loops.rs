@@ -9,7 +9,7 @@
 
 use crate::kinematics::Pose;
 use crate::math::Random;
-use crate::model::analysis::{Coordinates, ModelError};
+use crate::model::analysis::ModelError;
 use crate::model::presolve::graph::Graph;
 use crate::model::presolve::linkage::{Displaced, Linkage, NONE, rank};
 use crate::model::system::System;
@@ -41,12 +41,11 @@ pub struct Loops {
 }
 
 impl Loops {
-    /// Those of a system; reduced coordinates have none.
+    /// Those of a system.
     ///
     /// # Errors
     /// A loop can be closed in the reference only, by rounded places or axes.
     pub(crate) fn new(
-        coordinates: Coordinates,
         system: &System,
         graph: &Graph,
         reference: &[Pose],
@@ -56,7 +55,7 @@ impl Loops {
             length,
             ..Self::default()
         };
-        if coordinates == Coordinates::Reduced || graph.loops().is_empty() {
+        if graph.loops().is_empty() {
             return Ok(made);
         }
         let linkage = Linkage::new(system, graph, reference, length);

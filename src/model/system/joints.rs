@@ -37,7 +37,7 @@ pub struct Prescribed {
 /// Reading of the coordinate of a joint from the poses of its bodies.
 #[derive(Clone, Debug)]
 pub struct JointReading {
-    /// Index among the joint coordinates; `None` where the joint has none.
+    /// The coordinate of the model that is this one, of the tree or an internal one; `None` where poses alone tell it.
     pub coordinate: Option<usize>,
     /// Vectors a, b of the parent and c of the child, whose angle is the coordinate; or n, span for a displacement.
     measure: Option<JointCoordinate>,
@@ -127,6 +127,16 @@ impl Joint {
         parts.iter().map(named).collect()
     }
 
+    /// Returns the effect of a unit force on each of its coordinates on the whole system, as a force and a torque about the origin: between
+    /// two bodies nothing, from the ground the axis. Joints with several coordinates take no such force.
+    pub fn pulls(&self) -> Vec<[Vector; 2]> {
+        match (self.kind, self.parent) {
+            (JointKind::Revolute { axis }, None) => vec![[Vector::zeros(), axis]],
+            (JointKind::Prismatic { axis }, None) => vec![[axis, self.at.cross(&axis)]],
+            (kind, _) => vec![[Vector::zeros(); 2]; kind.freedoms()],
+        }
+    }
+
     /// Returns true if it transmits a torque.
     pub fn has_torque(&self) -> bool {
         self.kind != JointKind::Spherical
@@ -187,18 +197,6 @@ impl System {
         };
         self.joints.iter().map(index).collect()
     }
-
-    /// Returns the effect of a unit force on each joint coordinate on the whole system, as a force and a torque about the origin: between
-    /// two bodies nothing, from the ground the axis of the joint. Joints with several coordinates take no such force.
-    pub fn joint_pulls(&self) -> Vec<[Vector; 2]> {
-        let none = [Vector::zeros(); 2];
-        let pulls = |joint: &Joint| match (joint.kind, joint.parent) {
-            (JointKind::Revolute { axis }, None) => vec![[Vector::zeros(), axis]],
-            (JointKind::Prismatic { axis }, None) => vec![[axis, joint.at.cross(&axis)]],
-            (kind, _) => vec![none; kind.freedoms()],
-        };
-        self.joints.iter().flat_map(pulls).collect()
-    }
 }
 
 impl JointCoordinate {
@@ -228,7 +226,7 @@ impl JointCoordinate {
 }
 
 impl JointReading {
-    /// The reading of a joint of a system; the coordinate is that of [`System::joint_coordinates`].
+    /// The reading of a joint of a system that is a coordinate of the model, or none.
     pub fn new(joint: &Joint, coordinate: Option<usize>, reference: &[Pose]) -> Self {
         Self {
             coordinate,

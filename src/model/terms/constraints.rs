@@ -1,4 +1,5 @@
-//! Constraints that redundant coordinates leave open: rigid bodies and joints, times their multipliers.
+//! Constraints that coordinates leave open, times their multipliers: of redundant ones rigid bodies and joints, of reduced ones the joints
+//! that close loops.
 
 use crate::energy::{Coincidence, JointAngle, JointDisplacement, Orthogonality};
 use crate::functional::{Element, Group, Kernel, Stencil, Term};
@@ -52,16 +53,24 @@ impl Constraints {
 }
 
 impl Construction<'_> {
-    /// Adds the constraints of an instant, `−h₀ λ·g`, which redundant coordinates have.
+    /// Adds the constraints of an instant, `−h₀ λ·g`, that the coordinates leave open.
     pub(crate) fn add_constraints(&self, made: &mut Constraints, vectors: &mut Vectors) {
-        if self.coordinates == Coordinates::Reduced {
-            let why = "reduced coordinates leave no constraint";
-            let none = [RIGID, DIRECTIONS, POINTS, COORDINATES, GLUE];
-            return made.left_out.extend(none.map(|term| LeftOut { term, why }));
-        }
         let (mut all, h0) = (Elements::default(), self.analysis.interval);
         let system = &self.presolved.system;
-        for (b, body) in system.bodies.iter().enumerate() {
+        let (open, bodies, ends) = match self.coordinates {
+            Coordinates::Reduced => {
+                let why = "reduced coordinates leave no constraint";
+                let none = [RIGID, DIRECTIONS, POINTS, COORDINATES, GLUE];
+                made.left_out.extend(none.map(|term| LeftOut { term, why }));
+                (self.graph.loops().to_vec(), &[][..], "a loop is closed by")
+            }
+            Coordinates::Redundant => (
+                (0..system.joints.len()).collect(),
+                &system.bodies[..],
+                "redundant coordinates at the ends of",
+            ),
+        };
+        for (b, body) in bodies.iter().enumerate() {
             let axis = |i: usize| {
                 MaterialVector::direction(Some(b), &body.directors.column(i).into(), self.reference)
             };
@@ -75,32 +84,32 @@ impl Construction<'_> {
             }
         }
         let rigid = take(&mut all.dots);
-        self.joints(vectors, &mut all);
+        self.joints(&open, vectors, &mut all);
         let points = take(&mut all.points);
         for (span, name) in &self.blocks.ties {
             all.point(vectors, name, span.clone());
         }
         self.joint_coordinates(vectors, &mut all);
-        let bodies = system.bodies.iter().map(|body| body.name.as_str());
-        let joints = || system.joints.iter().map(|joint| joint.name.as_str());
+        let bodies = bodies.iter().map(|body| body.name.as_str());
+        let joints = || open.iter().map(|&j| system.joints[j].name.as_str());
         let is_glued = |glue: &Glue| glue.body.is_some();
         let glued = self.blocks.list.iter().filter(|c| !c.is_immobile);
         let glued = glued.filter(|c| c.solid.glued.iter().any(is_glued));
         let glued = glued.map(|c| c.solid.name.as_str());
         made.multipliers = all.names;
         made.add(RIGID, -h0, rigid, "directors of", bodies);
-        let why = "redundant coordinates at the ends of";
-        made.add(DIRECTIONS, -h0, all.dots, why, joints());
-        made.add(POINTS, -h0, points, why, joints());
+        made.add(DIRECTIONS, -h0, all.dots, ends, joints());
+        made.add(POINTS, -h0, points, ends, joints());
         let (why, of) = ("stiffness of", || all.of.iter().map(String::as_str));
         made.add(COORDINATES, -h0, all.angles, why, of());
         made.add(COORDINATES, -h0, all.displacements, why, of());
         made.add(GLUE, -h0, all.points, "glued nodes of", glued);
     }
 
-    /// Constraints of the joints, those that close loops without what is left out.
-    fn joints(&self, vectors: &mut Vectors, out: &mut Elements) {
-        for (j, joint) in self.presolved.system.joints.iter().enumerate() {
+    /// Constraints of some joints, those that close loops without what is left out.
+    fn joints(&self, open: &[usize], vectors: &mut Vectors, out: &mut Elements) {
+        for &j in open {
+            let joint = &self.presolved.system.joints[j];
             if let Some(products) = self.loops.kept(j) {
                 out.products(vectors, products.to_vec());
                 continue;
