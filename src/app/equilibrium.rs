@@ -12,7 +12,7 @@ use crate::app::{blocks, fields};
 use crate::control::problem::{AtRest, Task};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
-    Continuation, DiscreteTrajectory, Equilibrium, Instability, Reading, UNSTABLE, continuation,
+    Continuation, DiscreteTrajectory, Equilibrium, Instability, UNSTABLE, continuation,
     observations, out_of_domain,
 };
 use crate::files::{Entries, Loaded, driven_voltages, read_problem, read_system};
@@ -308,27 +308,10 @@ impl<'a> Stop<'a> {
     }
 }
 
-/// The discrete trajectory up to an instant.
-fn up_to(discrete: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
-    DiscreteTrajectory {
-        times: discrete.times[..=k].to_vec(),
-        z: discrete.z[..=k].to_vec(),
-        momenta: discrete.momenta[..=k].to_vec(),
-        scalars: discrete.scalars[..k].to_vec(),
-        reading: Reading::States,
-        ..DiscreteTrajectory::default()
-    }
-}
-
-/// The state at an instant, alone.
-fn single_instant(discrete: &DiscreteTrajectory, k: usize) -> DiscreteTrajectory {
-    DiscreteTrajectory {
-        times: vec![0.0],
-        z: vec![discrete.z[k].clone()],
-        momenta: vec![discrete.momenta[k].clone()],
-        scalars: vec![discrete.scalars[k - 1].clone()],
-        ..DiscreteTrajectory::default()
-    }
+/// Equilibria as a motion by their fractions of the voltages.
+fn in_turn(model: &Model, stops: &[Stop<'_>]) -> DiscreteTrajectory {
+    let states = stops.iter().map(|stop| (stop.fraction, stop.rest));
+    Equilibrium::in_turn(model, 0.0, states)
 }
 
 /// A path of equilibria as a motion in which time is the fraction of the voltages.
@@ -342,24 +325,10 @@ struct EquilibriumPath<'a> {
 impl<'a> EquilibriumPath<'a> {
     fn new(model: &'a Model, found: &'a Continuation) -> Self {
         let stops = Stop::all(found);
-        let first = std::iter::once(&stops[0]);
-        let discrete = DiscreteTrajectory {
-            times: std::iter::once(0.0)
-                .chain(stops.iter().map(|stop| stop.fraction))
-                .collect(),
-            z: first
-                .chain(&stops)
-                .map(|stop| stop.rest.z.clone())
-                .collect(),
-            momenta: vec![vec![0.0; model.coordinate_count()]; stops.len() + 1],
-            scalars: stops.iter().map(|stop| stop.rest.scalars.clone()).collect(),
-            reading: Reading::States,
-            ..DiscreteTrajectory::default()
-        };
         Self {
             model,
+            discrete: in_turn(model, &stops),
             stops,
-            discrete,
         }
     }
 
@@ -383,9 +352,11 @@ impl<'a> EquilibriumPath<'a> {
             discrete,
         } = self;
         let shown = self.shown();
-        let state = single_instant(discrete, shown + 1);
+        let rest = stops[shown].rest;
+        let state =
+            DiscreteTrajectory::in_steps(1.0, vec![rest.z.clone()], vec![rest.scalars.clone()]);
         let motion = Trajectory::from_discrete(model, &state);
-        let way = Trajectory::from_discrete(model, &up_to(discrete, shown + 1));
+        let way = Trajectory::from_discrete(model, &in_turn(model, &stops[..=shown]));
         let steps = DiscreteTrajectory {
             times: (0..=stops.len()).map(|k| 1e3 * (k as f64 - 1.0)).collect(),
             ..discrete.clone()

@@ -1,6 +1,8 @@
 //! A state of rest: the unknowns of a step with the charts behind which its turns are counted, its stiffness and modes, the route to it, and the
 //! loads and instabilities by which it is lost.
 
+use crate::dynamics::trajectory::{DiscreteTrajectory, Reading};
+use crate::model::Model;
 use crate::sparse::multigrid::MultigridReport;
 use std::ops::{Deref, DerefMut};
 
@@ -171,6 +173,25 @@ pub struct StabilityLoss {
 }
 
 impl Equilibrium {
+    /// Equilibria of a model one after the other, as a motion from `begin` with their times in ms: the first one stands at both ends of an interval
+    /// of its own, so that each has its potentials.
+    pub fn in_turn<'a>(
+        model: &Model,
+        begin: f64,
+        states: impl Iterator<Item = (f64, &'a Self)>,
+    ) -> DiscreteTrajectory {
+        let (times, states): (Vec<_>, Vec<_>) = states.unzip();
+        let z = |state: &&Self| state.z.clone();
+        DiscreteTrajectory {
+            times: [begin].into_iter().chain(times).collect(),
+            z: states[..1].iter().chain(&states).map(z).collect(),
+            momenta: vec![vec![0.0; model.coordinate_count()]; states.len() + 1],
+            scalars: states.iter().map(|state| state.scalars.clone()).collect(),
+            reading: Reading::States,
+            ..DiscreteTrajectory::default()
+        }
+    }
+
     /// Returns true if the equilibrium is stable; `None` where that is not known.
     pub fn is_stable(&self) -> Option<bool> {
         match self.stiffness.first() {
