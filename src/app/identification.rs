@@ -4,7 +4,7 @@ use crate::app::error::CommandError;
 use crate::app::identification_summary::{Identification, remarks, status};
 use crate::app::kept::record::make_folder_of;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted};
-use crate::app::summary::{EARLIER, Summary};
+use crate::app::summary::{Summary, remove_earlier};
 use crate::control::problem;
 use crate::files::Loaded;
 use crate::identify::{
@@ -60,7 +60,7 @@ pub(super) fn run(
     let text = identification.text();
     summary.task = identification.entries();
     let mut files = FileSet::in_folder(&folder);
-    EARLIER.iter().for_each(|name| files.remove(name));
+    remove_earlier(&mut files);
     files.add(
         "residuals.csv",
         cells_csv(&table(task, &found), &origin).as_bytes(),

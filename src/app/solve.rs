@@ -3,7 +3,6 @@
 use crate::app::blocks::{self, EnergySummary};
 use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::error::CommandError;
-use crate::app::fields::FOLDER;
 use crate::app::kept::record::{folder_within, make_folder, make_folder_of};
 use crate::app::kept::{resume_file, solution_file, unfinished};
 use crate::app::progress::Reached;
@@ -13,7 +12,7 @@ use crate::app::solve_summary::{
     program, rows, seconds, sensitivity_entries, targets, tolerance_warning, waypoints,
 };
 use crate::app::summary::{
-    EARLIER, MEASURED, STOPPED, Summary, leave_out, time_to_write, versions,
+    MEASURED, STOPPED, Summary, leave_out, remove_earlier, time_to_write, versions,
 };
 use crate::app::{feedback_files, fields};
 use crate::control::PEAK_VOLTAGE;
@@ -27,7 +26,6 @@ use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::page::compared;
-use crate::report::paraview::remove_from;
 use crate::report::{Run, atomic, sensitivities, write_run};
 use crate::stop;
 use crate::tasks::{MotionsResult, SolveResult};
@@ -282,8 +280,7 @@ impl Together<'_> {
     /// Writes the page of all side by side, and the summary last; returns the answer of the command.
     fn write(&self, began: Instant) -> Result<CommandOutput, CommandError> {
         let mut files = FileSet::in_folder(self.folder);
-        EARLIER.iter().for_each(|name| files.remove(name));
-        remove_from(0, FOLDER, &mut files);
+        remove_earlier(&mut files);
         let names = || self.task.motions.iter().map(|motion| motion.name);
         let folders: Vec<PathBuf> = names().map(|name| self.folder.join(name)).collect();
         let is_written = |folder: &PathBuf| folder.join(SIDE_BY_SIDE).is_file();

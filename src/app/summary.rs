@@ -208,7 +208,7 @@ fn asked(loaded: &Loaded) -> Vec<(String, String)> {
 }
 
 /// Files that an earlier result of the folder may have.
-pub(super) const EARLIER: [&str; 29] = [
+const EARLIER: [&str; 29] = [
     "body_forces.svg",
     "charge.svg",
     "charges.svg",
@@ -240,6 +240,12 @@ pub(super) const EARLIER: [&str; 29] = [
     "voltages.svg",
 ];
 
+/// Removes the files and fields of an earlier result.
+pub(super) fn remove_earlier(files: &mut FileSet) {
+    EARLIER.iter().for_each(|name| files.remove(name));
+    remove_from(0, FOLDER, files);
+}
+
 /// Statuses of a run that was stopped.
 pub(super) const STOPPED: [&str; 2] = ["interrupted", "time_limit"];
 
@@ -266,8 +272,7 @@ pub(super) fn time_to_write(request: &CommandInput, began: Instant) -> TimeLimit
 /// Makes a result one whose writing was stopped: the first `kept` files alone, a warning, and the status where it has no message of another.
 pub(super) fn leave_out(summary: &mut Summary, stopped: Status, files: &mut FileSet, kept: usize) {
     files.truncate(kept);
-    EARLIER.iter().for_each(|name| files.remove(name));
-    remove_from(0, FOLDER, files);
+    remove_earlier(files);
     if summary.message.is_none() {
         stopped.word().clone_into(&mut summary.status);
     }
@@ -304,7 +309,7 @@ fn write_alone(
     let mut summary = Summary::new(request, status, None);
     summary.message = Some(reason.to_owned());
     let mut files = FileSet::in_folder(&folder);
-    EARLIER.iter().for_each(|name| files.remove(name));
+    remove_earlier(&mut files);
     Ok(summary.write(files)?)
 }
 
@@ -338,33 +343,31 @@ pub(super) fn refuse_all_but_motions(
     request: &CommandInput,
     task: &Task,
 ) -> Result<(), CommandError> {
-    let (asks, word, instead) = match task {
+    let instead = match task {
         Task::Simulate(_) => return Ok(()),
-        Task::Control(_) | Task::Motions(_) => (
-            "optimal voltages",
-            "solve",
-            "; a motion under given voltages is asked for by \"simulate\" in place of \"control\"",
-        ),
-        Task::Identify(_) => ("constants", "solve", ""),
-        Task::Equilibrium(_) => ("a state of rest", "equilibrium", ""),
+        Task::Control(_) | Task::Motions(_) => {
+            "; a motion under given voltages is asked for by \"simulate\" in place of \"control\""
+        }
+        Task::Identify(_) | Task::Equilibrium(_) => "",
     };
-    Err(asks_for(request, task, [asks, word, instead]))
+    Err(asks_for(request, task, instead))
 }
 
 /// The refusal of a problem that asks for no state of rest.
 pub(super) fn no_equilibrium(request: &CommandInput, task: &Task) -> CommandError {
+    let instead =
+        ", and for no equilibrium; for that of its scene name the voltages with --voltages";
+    asks_for(request, task, instead)
+}
+
+/// The refusal of a problem that asks for something else, with the command that finds it, and what there is `instead`.
+fn asks_for(request: &CommandInput, task: &Task, instead: &str) -> CommandError {
     let (asks, word) = match task {
         Task::Control(_) | Task::Motions(_) => ("optimal voltages", "solve"),
         Task::Identify(_) => ("constants", "solve"),
-        _ => ("a motion", "simulate"),
+        Task::Equilibrium(_) => ("a state of rest", "equilibrium"),
+        Task::Simulate(_) => ("a motion", "simulate"),
     };
-    let instead =
-        ", and for no equilibrium; for that of its scene name the voltages with --voltages";
-    asks_for(request, task, [asks, word, instead])
-}
-
-/// The refusal of a problem that asks for something else, with the word of the command that finds it.
-fn asks_for(request: &CommandInput, task: &Task, [asks, word, instead]: [&str; 3]) -> CommandError {
     let found = quoting::command(request.words(word));
     let reason = format!("asks for {asks}, found by `{found}`{instead}");
     CommandError::problem(&request.input, key(task), reason)
