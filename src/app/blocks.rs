@@ -80,38 +80,22 @@ impl BlockSize {
     }
 }
 
-/// Sums over all sources from the start to the end of a motion, in J.
-#[derive(Debug, Serialize)]
-pub(super) struct EnergySummary {
-    /// Electrical energy from the sources.
-    electrical_energy: f64,
-    /// Work of the electrical forces.
-    mechanical_work: f64,
+/// The electrical energy from all sources and the work of the electrical forces from the start to the end of a motion in J; none without
+/// sources, or where one drives finite elements.
+pub(super) fn energies(exchange: &EnergyExchange) -> Option<BTreeMap<&'static str, f64>> {
+    let last = |sums: Vec<f64>| sums.last().copied().unwrap_or(0.0) / 1e3;
+    let sums = exchange.totals()?.map(last);
+    let names = ["electrical_energy", "mechanical_work"];
+    Some(names.into_iter().zip(sums).collect())
 }
 
-impl EnergySummary {
-    /// Of a motion; none without sources, or where one drives finite elements.
-    pub(super) fn new(exchange: &EnergyExchange) -> Option<Self> {
-        let last = |sums: Vec<f64>| sums.last().copied().unwrap_or(0.0) / 1e3;
-        let [electrical_energy, mechanical_work] = exchange.totals()?.map(last);
-        Some(Self {
-            electrical_energy,
-            mechanical_work,
-        })
-    }
-
-    /// Rows of the table of the page.
-    pub(super) fn rows(&self) -> [(String, String); 2] {
-        let row = |name: &str, energy: f64| {
-            let value = format!("{} mJ", significant(1e3 * energy, 5));
-            (name.to_owned(), value)
-        };
-        [
-            row("electrical energy from the sources", self.electrical_energy),
-            row(
-                "mechanical work of the electrical forces",
-                self.mechanical_work,
-            ),
-        ]
-    }
+/// Rows of the page with these energies.
+pub(super) fn energy_rows(energies: &BTreeMap<&'static str, f64>) -> Vec<(String, String)> {
+    let names = [
+        "electrical energy from the sources",
+        "mechanical work of the electrical forces",
+    ];
+    let text = |energy: &f64| format!("{} mJ", significant(1e3 * energy, 5));
+    let rows = names.map(str::to_owned).into_iter();
+    rows.zip(energies.values().map(text)).collect()
 }

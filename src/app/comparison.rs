@@ -21,7 +21,7 @@ pub(super) struct Comparison {
 }
 
 /// Distances of one marker.
-#[derive(Debug, Serialize)]
+#[derive(Debug, Default, Serialize)]
 struct Apart {
     /// The greatest at the instants of the solution.
     greatest: f64,
@@ -74,11 +74,7 @@ impl Comparison {
         earlier: &Trajectory,
     ) -> Self {
         let apart = |m: usize| {
-            let mut apart = Apart {
-                greatest: 0.0,
-                last: 0.0,
-                path_length: 0.0,
-            };
+            let mut apart = Apart::default();
             let mut before = earlier.marks[0][m];
             for (&time, row) in earlier.times.iter().zip(&earlier.marks) {
                 let Some(place) = at(motion, time, m) else {

@@ -138,7 +138,7 @@ pub(super) fn at(
         Some(_) => "The last equilibrium",
     };
     let mut page = summary.page(title, loaded);
-    page.rows = rest.rows(status);
+    page.rows = rest.rows();
     let skins = Skins::new(model, discrete);
     let run = Run {
         name: "rest",

@@ -271,7 +271,7 @@ impl<'a> Rest<'a> {
     }
 
     /// Rows of the page.
-    pub(super) fn rows(&self, status: &str) -> Vec<(String, String)> {
+    pub(super) fn rows(&self) -> Vec<(String, String)> {
         let verdict = match self.result.loss {
             None => self.verdict(),
             Some(_) => "the last equilibrium of the path of growing loads".to_owned(),
@@ -279,7 +279,6 @@ impl<'a> Rest<'a> {
         let on = self.driven();
         let on: Vec<String> = on.map(|(name, v)| format!("{name} {v:.4} kV")).collect();
         let rows = [
-            ("status", Some(status.replace('_', " "))),
             ("verdict", Some(verdict)),
             ("voltages", (!on.is_empty()).then(|| on.join(", "))),
             ("softest mode", self.softest()),

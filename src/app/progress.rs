@@ -114,7 +114,7 @@ impl Progress {
         let seconds = self.began.elapsed().as_secs_f64() / ended.max(1) as f64;
         let left = match waiting {
             0 => String::new(),
-            waiting => format!(", about {} left", rough(seconds * waiting as f64)),
+            waiting => left(seconds * waiting as f64),
         };
         self.bar
             .set_message(format!("({solved} solved{best}{left})"));
@@ -131,22 +131,19 @@ impl Progress {
         if seconds > 0.01 {
             let left = match steps {
                 usize::MAX => String::new(),
-                _ => {
-                    let left = rough(seconds * steps.saturating_sub(step) as f64);
-                    format!(", about {left} left")
-                }
+                _ => left(seconds * steps.saturating_sub(step) as f64),
             };
             self.bar.set_message(format!("{seconds:.2} s each{left}"));
         }
     }
 }
 
-/// A time as one says it.
-fn rough(seconds: f64) -> String {
+/// The time that is left as one says it.
+fn left(seconds: f64) -> String {
     match seconds {
-        s if s < 90.0 => format!("{s:.0} s"),
-        s if s < 5400.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
+        s if s < 90.0 => format!(", about {s:.0} s left"),
+        s if s < 5400.0 => format!(", about {:.0} min left", s / 60.0),
+        s => format!(", about {:.1} h left", s / 3600.0),
     }
 }
 

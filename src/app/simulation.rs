@@ -1,6 +1,6 @@
 //! A simulation from file to folder.
 
-use crate::app::blocks::{self, EnergySummary};
+use crate::app::blocks;
 use crate::app::comparison::Comparison;
 use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::error::CommandError;
@@ -317,7 +317,7 @@ impl<'a> Ended<'a> {
         summary.task = self.entries(assessment.neglected);
         summary.domain.clone_from(&assessment.outside);
         summary.blocks.clone_from(&observed.blocks);
-        summary.energies = EnergySummary::new(&assessment.exchange);
+        summary.energies = blocks::energies(&assessment.exchange);
         summary.notes.clone_from(&assessment.remarks);
         summary.closed_loop.clone_from(&self.result.closed_loop);
         summary.notes.note("units", self.run.loaded.notes.clone());
@@ -433,7 +433,6 @@ pub(super) fn rows(
     let reached = discrete.times[discrete.intervals()];
     let row = |name: &str, value: String| (name.to_owned(), value);
     let mut rows = vec![
-        row("status", summary.status.replace('_', " ")),
         row("steps", warnings::counted(discrete, task)),
         row("duration", format!("{} s", reached / 1e3)),
         row("method", method(task)),

@@ -1,6 +1,6 @@
 //! A control problem from file to folder: solved, re-simulated, and reported; of several motions what they have in common, beside the folder of each.
 
-use crate::app::blocks::{self, EnergySummary};
+use crate::app::blocks;
 use crate::app::displayed_motion::{DisplayedMotion, Motion};
 use crate::app::error::CommandError;
 use crate::app::kept::record::{folder_within, make_folder, make_folder_of};
@@ -24,9 +24,10 @@ use crate::math::significant;
 use crate::model::{FoundParameter, System};
 use crate::report::atomic::WriteError;
 use crate::report::file_set::FileSet;
+use crate::report::lines::LinePlot;
 use crate::report::origin::Origin;
 use crate::report::page::compared;
-use crate::report::{Run, atomic, sensitivities, write_run};
+use crate::report::{PageContent, Run, atomic, sensitivities, write_run};
 use crate::stop;
 use crate::tasks::{MotionsResult, SolveResult};
 use crate::workflow::effects::Plan;
@@ -160,7 +161,6 @@ impl Solved<'_> {
         let written = fields::write(files, model, discrete, &origin)?;
         summary.blocks = blocks::entries(model, &observed, written);
         observed.columns.extend(result.exchange.columns());
-        write_sensitivities(result, files, &origin)?;
         let motion = Motion {
             model,
             discrete,
@@ -198,17 +198,8 @@ impl Solved<'_> {
         let goal = goal(model, boundary);
         let mut content = summary.page("Optimal control", Some(self.loaded));
         content.rows = rows(summary, self.system, control, result);
-        content
-            .plots
-            .push(convergence(&optimum.solution.iterations));
-        let list = &result.sensitivities;
-        let bars = sensitivities::bars(list).map(|plot| ("Sensitivities", plot));
-        let voltages = sensitivities::voltages(&model.system, &result.trajectory, list);
-        let voltages = voltages.map(|plot| ("Voltages with tolerances", plot));
-        let plots = bars.into_iter().chain(voltages);
-        content
-            .plots
-            .extend(plots.map(|(title, plot)| (title.to_owned(), plot)));
+        content.plots = vec![convergence(&optimum.solution.iterations)];
+        add_sensitivities(result, &mut content, files, origin)?;
         let run = Run {
             name: match summary.status.as_str() {
                 _ if is_solved => "optimal voltages",
@@ -232,7 +223,7 @@ impl Solved<'_> {
 /// Adds to the summary what was observed of an optimal motion.
 fn add_observed(summary: &mut Summary, result: &SolveResult) {
     summary.domain.clone_from(&result.outside);
-    summary.energies = EnergySummary::new(&result.exchange);
+    summary.energies = blocks::energies(&result.exchange);
     summary.tracking.clone_from(&result.tracking);
     summary.waypoint_values.clone_from(&result.waypoint_values);
     summary.final_values.clone_from(&result.final_values);
@@ -248,21 +239,35 @@ fn add_observed(summary: &mut Summary, result: &SolveResult) {
     summary.notes.warn("tolerance", warnings);
 }
 
-/// Writes tables and figures of sensitivities where there are any; those of an earlier run do not stay next to other results.
-fn write_sensitivities(
+/// Writes the table and figures of sensitivities where there are any, and adds these to the page; those of an earlier run do not stay next to
+/// other results.
+fn add_sensitivities(
     result: &SolveResult,
+    content: &mut PageContent,
     files: &mut FileSet,
     origin: &Origin,
 ) -> Result<(), WriteError> {
     let (list, system) = (&result.sensitivities, &result.optimum.model.system);
-    let is_any = !list.is_empty();
-    let table = is_any.then(|| sensitivities::table(system, &result.trajectory, list, origin));
+    let motion = &result.trajectory;
+    let table = (!list.is_empty()).then(|| sensitivities::table(system, motion, list, origin));
     files.put("sensitivities.csv", table)?;
-    let bars = sensitivities::bars(list).map(|plot| plot.svg(origin));
-    files.put("sensitivities.svg", bars)?;
-    let voltages = sensitivities::voltages(system, &result.trajectory, list);
-    let voltages = voltages.map(|plot| plot.svg(origin));
-    files.put("voltages_tolerances.svg", voltages)
+    let mut add = |file: &str, title: &str, plot: Option<LinePlot>| {
+        let svg = plot.as_ref().map(|plot| plot.svg(origin));
+        let titled = plot.map(|plot| (title.to_owned(), plot));
+        content.plots.extend(titled);
+        files.put(file, svg)
+    };
+    add(
+        "sensitivities.svg",
+        "Sensitivities",
+        sensitivities::bars(list),
+    )?;
+    let voltages = sensitivities::voltages(system, motion, list);
+    add(
+        "voltages_tolerances.svg",
+        "Voltages with tolerances",
+        voltages,
+    )
 }
 
 /// The part that all motions have in common, with their summaries in the order of the motions.

@@ -167,7 +167,6 @@ pub(super) fn rows(
     let objective = objective(optimum.solution.objective, &control.objective_units(system));
     let mut rows = Vec::new();
     let mut row = |key: &str, value: String| rows.push((key.to_owned(), value));
-    row("status", summary.status.clone());
     row("objective", objective);
     row("iterations", result.iterations.to_string());
     row(

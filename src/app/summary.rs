@@ -4,7 +4,7 @@
 //!
 //! Result of a run that finds no state of rest to begin with, to end with, or at all, or no optimum that its controller follows: its summary alone.
 
-use crate::app::blocks::EnergySummary;
+use crate::app::blocks::energy_rows;
 use crate::app::comparison::Comparison;
 use crate::app::displayed_motion::ShownPart;
 use crate::app::error::CommandError;
@@ -30,6 +30,7 @@ use crate::workflow::tracking::FinalValue;
 use crate::workflow::warnings::Outside;
 use crate::workflow::{Remarks, Tracked};
 use serde::Serialize;
+use std::collections::BTreeMap;
 use std::fs;
 use std::time::Instant;
 
@@ -77,7 +78,7 @@ pub(super) struct Summary {
     pub(super) sensitivities: Vec<Entries>,
     /// Electrical energy and mechanical work of a motion.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub(super) energies: Option<EnergySummary>,
+    pub(super) energies: Option<BTreeMap<&'static str, f64>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(super) comparison: Option<Comparison>,
     /// Muscles and blocks that leave the domain of the first-order dielectric.
@@ -132,7 +133,7 @@ impl Summary {
     pub(super) fn rows(&self) -> Vec<(String, String)> {
         let seconds = format!("{:.3} s", self.seconds.total);
         let mut rows = vec![("computing time".to_owned(), seconds)];
-        rows.extend(self.energies.iter().flat_map(EnergySummary::rows));
+        rows.extend(self.energies.iter().flat_map(energy_rows));
         let estimated = self.accuracy.iter().flat_map(|accuracy| &accuracy.estimate);
         rows.extend(
             estimated

@@ -21,6 +21,7 @@ use crate::workflow::program::resolve_each;
 use rank::Rank;
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::fmt::Debug;
 use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
@@ -262,19 +263,19 @@ fn cells(ended: &[StartEnd]) -> Vec<Vec<String>> {
         "seconds [s]",
         "optimum",
     ];
-    let number = |value: Option<f64>| value.map_or_else(String::new, |v| format!("{v:?}"));
-    let count = |value: Option<usize>| value.map_or_else(String::new, |v| v.to_string());
+    fn cell(value: Option<impl Debug>) -> String {
+        value.map_or_else(String::new, |value| format!("{value:?}"))
+    }
     let row = |one: &StartEnd| {
+        let summary = &one.ended.summary;
         vec![
             one.start.number.to_string(),
-            one.start
-                .seed
-                .map_or_else(String::new, |seed| seed.to_string()),
-            one.ended.summary.status.clone(),
-            number(one.objective()),
-            count(one.ended.summary.iterations),
-            number(Some(one.ended.summary.seconds.total)),
-            count(one.optimum),
+            cell(one.start.seed),
+            summary.status.clone(),
+            cell(one.objective()),
+            cell(summary.iterations),
+            cell(Some(summary.seconds.total)),
+            cell(one.optimum),
         ]
     };
     let header = header.map(str::to_owned).to_vec();

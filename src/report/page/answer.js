@@ -7,7 +7,7 @@ function answer(data, holder) {
     const notes = data.notes.map((note) => element("li", {}, ...worded(note)));
     holder.append(element("ul", { class: `notes ${data.isSolved ? "" : "bad"}` }, ...notes));
   }
-  const rows = data.rows.filter(([name]) => name !== "status").map(([name, value]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, ...worded(value))));
+  const rows = data.rows.map(([name, value]) => element("tr", {}, element("th", { scope: "row" }, name), element("td", {}, ...worded(value))));
   holder.append(element("table", {}, element("tbody", {}, ...rows)));
 }
 
@@ -27,7 +27,7 @@ function compared(data, holder) {
   const head = element("tr", {}, element("th", { scope: "col" }, "result"), ...data.names.map(name));
   const ends = data.answers.map((text, i) => element("td", { class: data.solved[i] ? "good" : "bad" }, data.solved[i] ? "✓ " : "✗ ", ...worded(text)));
   const rows = [element("tr", {}, element("th", { scope: "row" }, "status"), ...ends)];
-  for (const [title, ...values] of data.table.filter((row) => row[0] !== "status")) {
+  for (const [title, ...values] of data.table) {
     const differs = values.some((value) => value !== values[0]);
     const cells = values.map((value, i) => element("td", {}, value + (i ? change(values[0], value) : "")));
     rows.push(element("tr", { class: differs ? "differs" : null }, element("th", { scope: "row" }, title), ...cells));
