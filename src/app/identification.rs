@@ -6,17 +6,19 @@ use crate::app::kept::record::make_folder_of;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted};
 use crate::app::summary::{Summary, remove_earlier};
 use crate::control::problem;
+use crate::dynamics::trajectory::Trajectory;
 use crate::files::Loaded;
 use crate::identify::{
-    Ended, Experiment, Identified, IdentifyError, Series, found_starts, identify,
+    Ended, Experiment, FittedMotion, Identified, IdentifyError, Problem, Series, identify,
 };
 use crate::math::significant;
 use crate::nlp::Status;
 use crate::report::file_set::FileSet;
 use crate::report::lines::{LinePlot, Mark, Series as Curve, over_time};
-use crate::report::page::of_plots;
+use crate::report::page::html;
+use crate::report::skins::Skins;
 use crate::report::table::{aligned, cells_csv};
-use crate::report::{PageContent, style};
+use crate::report::{Run, style};
 use crate::stop;
 use crate::workflow::remark::phase;
 use std::time::Instant;
@@ -28,18 +30,17 @@ pub(super) fn run(
     task: &problem::Identification,
     began: Instant,
 ) -> Result<CommandOutput, CommandError> {
-    let read = began.elapsed().as_secs_f64();
+    let (system, read) = (&loaded.system, began.elapsed().as_secs_f64());
     let watch = stop::watch(request.max_seconds.map(|seconds| seconds - read));
     phase("fitting");
-    let found = identify(&loaded.system, task, &mut |fit, grid| {
+    let found = identify(system, task, &mut |fit, grid| {
         tracing::debug!(intervals = ?grid.intervals, sum = fit.sum(), "fitted");
     });
     let found = found.map_err(|error| refused(request, &error))?;
-    let starts = found_starts(&loaded.system, task, &found);
-    let starts = starts.map_err(|error| refused(request, &error))?;
     let is_complete = found.fit.ended == Ended::Converged && found.bias.is_confirmed;
     let stopped = stop::reason().filter(|_| !is_complete);
     drop(watch);
+    let motions = FittedMotion::all(Problem { system, task }, &found);
     let folder = make_folder_of(request)?;
     let writing = Instant::now();
     let origin = request.origin(false);
@@ -52,10 +53,10 @@ pub(super) fn run(
         summary.notes.warn("stopped", [text.to_owned()]);
     }
     let identification = Identification {
-        system: &loaded.system,
+        system,
         task,
         found: &found,
-        starts: &starts,
+        motions: &motions,
     };
     let text = identification.text();
     summary.task = identification.entries();
@@ -65,12 +66,11 @@ pub(super) fn run(
         "residuals.csv",
         cells_csv(&table(task, &found), &origin).as_bytes(),
     )?;
+    (summary.seconds.setup, summary.seconds.total) = (read, began.elapsed().as_secs_f64());
     if request.page == PageWanted::Written {
-        let content = page(identification, loaded, &text, &summary);
-        let page = of_plots(&loaded.system.name, &content, &origin);
+        let page = page(identification, request, loaded, &summary);
         files.add("report.html", page.as_bytes())?;
     }
-    summary.seconds.setup = read;
     summary.seconds.wrote(began, writing);
     let notes = summary.notes.lines().collect();
     summary.write(files)?;
@@ -113,8 +113,7 @@ fn table(task: &problem::Identification, found: &Identified) -> Vec<Vec<String>>
         "held out",
     ];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
-    let held_out = found.held_out.iter().flat_map(|one| &one.series);
-    for one in found.series.iter().chain(held_out) {
+    for one in series(found) {
         let recording = &task.recordings[one.recording];
         let channel = &recording.channels[one.channel];
         let (symbol, factor) = channel.unit;
@@ -135,33 +134,59 @@ fn table(task: &problem::Identification, found: &Identified) -> Vec<Vec<String>>
     rows
 }
 
-/// The page: constants with intervals, verdicts, measured against predicted, residuals, correlations and the next experiments.
+/// The page: constants with their errors, verdicts, correlations and the next experiments, and each recording as the fit predicts it.
 fn page(
     identification: Identification<'_>,
+    request: &CommandInput,
     loaded: &Loaded,
-    text: &str,
     summary: &Summary,
-) -> PageContent {
+) -> String {
     let Identification { task, found, .. } = identification;
     let mut content = summary.page("Identification", Some(loaded));
     content.is_solved = is_solved(found);
-    content.notes.splice(0..0, text.lines().map(str::to_owned));
+    content.notes.splice(0..0, identification.verdicts());
+    content.rows = identification.rows();
+    content.rows.extend(summary.rows());
+    let mut add = |name: &str, rows: &[Vec<String>]| {
+        let table = (rows.len() > 1).then(|| (name.to_owned(), aligned(rows)));
+        content.documents.extend(table);
+    };
+    add("Correlation", &correlations(task, found));
+    let after = experiments(task, found);
+    add("Standard errors after the next experiment", &after);
+    let shown = identification.motions.iter().map(|motion| {
+        let (model, discrete) = (&motion.model, &motion.discrete);
+        let of_recording = series(found).filter(|one| one.recording == motion.recording);
+        let plots: Vec<_> = of_recording.flat_map(|one| plots(task, one)).collect();
+        let trajectory = Trajectory::from_discrete(model, discrete);
+        let skins = Skins::new(model, discrete);
+        (motion, trajectory, skins, plots)
+    });
+    let (shown, origin) = (shown.collect::<Vec<_>>(), request.origin(false));
+    let runs = shown.iter().map(|(motion, trajectory, skins, plots)| Run {
+        name: &task.recordings[motion.recording].name,
+        plots,
+        figures: request.figures,
+        ..Run::from_trajectory(
+            &motion.model.system,
+            trajectory,
+            skins,
+            &motion.observations,
+            &origin,
+        )
+    });
+    html(
+        &loaded.system.name,
+        &runs.collect::<Vec<_>>(),
+        &content,
+        &origin,
+    )
+}
+
+/// Residuals of all recordings, those that are held out last.
+fn series(found: &Identified) -> impl Iterator<Item = &Series> {
     let held_out = found.held_out.iter().flat_map(|one| &one.series);
-    let series = found.series.iter().chain(held_out);
-    content
-        .plots
-        .extend(series.flat_map(|one| plots(task, one)));
-    let tables = [
-        ("Correlation", correlations(task, found)),
-        (
-            "Standard errors after the next experiment",
-            experiments(task, found),
-        ),
-    ];
-    let tables = tables.into_iter().filter(|(_, rows)| rows.len() > 1);
-    let tables = tables.map(|(name, rows)| (name.to_owned(), aligned(&rows)));
-    content.documents.extend(tables);
-    content
+    found.series.iter().chain(held_out)
 }
 
 /// Correlations of the constants that have intervals; none of fewer than two.
@@ -222,7 +247,7 @@ fn plots(task: &problem::Identification, one: &Series) -> [(String, LinePlot); 2
         vec![predicted, measured.marked(Mark::Ring).unjoined()],
     );
     let residuals = over_time(&one.times, one.standardised());
-    let residuals = Curve::curve("", residuals, style::hue(1));
+    let residuals = Curve::curve("residual", residuals, style::hue(1));
     let below = LinePlot {
         frame: [400.0, 120.0],
         ..LinePlot::over_time(
@@ -234,7 +259,7 @@ fn plots(task: &problem::Identification, one: &Series) -> [(String, LinePlot); 2
         true => ", held out",
         false => "",
     };
-    let title = format!("{}: {}{held_out}", recording.name, channel.name);
+    let title = format!("{}{held_out}", channel.name);
     let residuals = format!("{title}, residuals");
     [(title, above), (residuals, below)]
 }

@@ -5,10 +5,10 @@
 use crate::control::problem::{self, Recording};
 use crate::files::Entries;
 use crate::identify::{
-    Ended, Experiment, FoundStart, HeldOut, Identified, NONE, Product, Series, Undetermined,
+    Ended, Experiment, FittedMotion, HeldOut, Identified, NONE, Product, Series, Undetermined,
     Whiteness,
 };
-use crate::math::significant;
+use crate::math::{prefixed, significant};
 use crate::model::{SiUnit, System};
 use crate::workflow::Remarks;
 use serde::Serialize;
@@ -19,8 +19,8 @@ pub(super) struct Identification<'a> {
     pub(super) system: &'a System,
     pub(super) task: &'a problem::Identification,
     pub(super) found: &'a Identified,
-    /// Starts that were sought.
-    pub(super) starts: &'a [FoundStart],
+    /// Recordings as the fit predicts them.
+    pub(super) motions: &'a [FittedMotion],
 }
 
 /// The product of constants that the data determine.
@@ -42,13 +42,15 @@ impl Identification<'_> {
             both.map(|_| found.information.correlation(i, j))
         };
         let row = |i| constants.clone().map(|j| pair(i, j)).collect::<Vec<_>>();
-        let each = |one| self.constant(one);
         let undetermined = found.information.undetermined.iter();
-        let starts = self.starts.iter().map(|one| self.start(one));
+        let of = |one: &FittedMotion| &task.recordings[one.recording];
+        let starts = self.motions.iter().filter(|one| of(one).seeks_start());
+        let starts = starts.filter(|one| !of(one).is_held_out);
+        let starts = starts.map(|one| self.start(one));
         let held_out = found.held_out.iter().map(|one| self.prediction(one));
         let experiments = found.experiments.iter().map(|one| self.candidate(one));
         Entries::default()
-            .with_each("constants", constants.clone().map(each))
+            .with_each("constants", constants.clone().map(|j| self.constant(j)))
             // None of constants without an interval.
             .with_each("correlation", constants.clone().map(row))
             .with_each(
@@ -57,11 +59,7 @@ impl Identification<'_> {
             )
             .with("readings", found.fit.residuals().len())
             .with("unknowns", found.fit.free())
-            // Σ of the squared residuals in standard deviations over the degrees of freedom.
-            .with(
-                "reduced_chi_square",
-                found.fit.sum() / found.fit.freedom().max(1) as f64,
-            )
+            .with("reduced_chi_square", self.reduced())
             // Probability of so large residuals, where the standard deviations are known.
             .with_some("p", found.p)
             .with("grid", self.grid())
@@ -73,21 +71,51 @@ impl Identification<'_> {
 
     /// In words, a line for each constant and verdict.
     pub(super) fn text(&self) -> String {
+        let rows = self.rows().into_iter();
+        let rows = rows.map(|(name, value)| format!("{name}: {value}"));
+        let lines: Vec<String> = rows.chain(self.verdicts()).collect();
+        lines.join("\n")
+    }
+
+    /// Rows of the page: the constants, and how well the model fits.
+    pub(super) fn rows(&self) -> Vec<(String, String)> {
+        let constants = self.task.parameters.iter().enumerate();
+        let constants = constants.map(|(j, one)| (one.name.clone(), self.in_words(j)));
+        let reduced = ("reduced χ²".to_owned(), significant(self.reduced(), 3));
+        constants.chain([reduced]).collect()
+    }
+
+    /// A constant with its standard error and its interval in the unit that suits it: `122.97 kPa ± 0.12 (95 %: 122.73 to 123.21)`.
+    fn in_words(&self, constant: usize) -> String {
+        let Some(value) = self.value(constant) else {
+            return "not determined".to_owned();
+        };
+        let (half, unit) = (self.half(constant), self.unit(constant).symbol);
+        let (unit, factor) = prefixed(value.abs().max(half.unwrap_or(0.0)), unit);
+        let (value, unit) = (factor * value, format!(" {unit}"));
+        let unit = unit.trim_end();
+        let Some(half) = half.map(|half| factor * half) else {
+            return format!("{}{unit}, at its bound", significant(value, 6));
+        };
+        let error = half / self.found.information.factor;
+        // Two digits of the error.
+        let decimals = (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize;
+        let [from, to] = [value - half, value + half];
+        format!(
+            "{value:.decimals$}{unit} ± {error:.decimals$} (95 %: {from:.decimals$} to {to:.decimals$})"
+        )
+    }
+
+    /// Squared residuals in standard deviations over the degrees of freedom.
+    fn reduced(&self) -> f64 {
+        let fit = &self.found.fit;
+        fit.sum() / fit.freedom().max(1) as f64
+    }
+
+    /// Combinations that the data leave open, verdicts on recordings that were held out, and the best next experiment.
+    pub(super) fn verdicts(&self) -> Vec<String> {
         let Self { task, found, .. } = *self;
         let mut lines = Vec::new();
-        for (j, parameter) in task.parameters.iter().enumerate() {
-            let (name, unit) = (&parameter.name, self.unit(j).symbol);
-            let number = |value| significant(value, 6);
-            lines.push(match (self.value(j), self.half(j)) {
-                (Some(value), Some(half)) => {
-                    let ends = [value - half, value + half].map(number);
-                    let interval = format!("(95 %: {} to {})", ends[0], ends[1]);
-                    format!("{name} = {} {unit} {interval}", number(value))
-                }
-                (Some(value), None) => format!("{name} = {} {unit}, at its bound", number(value)),
-                _ => format!("{name} is not determined"),
-            });
-        }
         for one in &found.information.undetermined {
             lines.push(words(task, one));
             lines.extend(self.determined(one).map(|known| {
@@ -104,7 +132,7 @@ impl Identification<'_> {
         let best = found.experiments.first();
         let best = best.map(|one| &task.candidates[one.candidate].name);
         lines.extend(best.map(|name| format!("next experiment: {name}")));
-        lines.join("\n")
+        lines
     }
 
     /// SI unit of a constant.
@@ -195,8 +223,8 @@ impl Identification<'_> {
     }
 
     /// The start of a recording; the unit of a rate is that of the coordinate over s.
-    fn start(&self, one: &FoundStart) -> Entries {
-        let joints = one.in_si(self.system).map(|(name, unit, value, rate)| {
+    fn start(&self, one: &FittedMotion) -> Entries {
+        let joints = one.start().map(|(name, unit, value, rate)| {
             let joint = Entries::default().with("name", name).with("unit", unit);
             joint.with("value", value).with("rate", rate)
         });

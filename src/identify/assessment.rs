@@ -52,6 +52,10 @@ pub struct HeldOut {
     pub p: f64,
     /// Whiteness of the residuals of each channel.
     pub whiteness: Vec<Option<Whiteness>>,
+    /// Intervals of the coarser of the two grids on which it is predicted.
+    pub(super) intervals: usize,
+    /// Unknowns of its start.
+    pub(super) start: Vec<f64>,
 }
 
 impl HeldOut {
@@ -136,6 +140,8 @@ impl HeldOut {
             statistic,
             quantile,
             p,
+            intervals: grid.intervals[recording],
+            start: found.unknowns.of_start(recording).to_vec(),
         })
     }
 }

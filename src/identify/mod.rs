@@ -22,5 +22,5 @@ pub use fit::{Ended, Fit, Series};
 pub use information::{Information, Product, Undetermined};
 pub use prediction::{Grid, Unknowns};
 pub use readout::Prediction;
-pub use refine::{Bias, FoundStart, Identified, NONE, first_model, found_starts, identify};
+pub use refine::{Bias, FittedMotion, Identified, NONE, first_model, identify};
 pub use setup::Problem;

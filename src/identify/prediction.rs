@@ -5,11 +5,11 @@
 
 use crate::control::problem::{BoundaryState, Identification, Prior, Recording, Regime, Voltages};
 use crate::control::{StartDerivatives, rest_at};
-use crate::dynamics::{DiscreteTrajectory, Start, simulate};
+use crate::dynamics::{DiscreteTrajectory, Equilibrium, Start, StepError, simulate};
 use crate::identify::error::IdentifyError;
 use crate::identify::readout::{Beginning, Course, Prediction, derivatives};
 use crate::identify::setup::{Problem, Setup};
-use crate::math::{cores, has_pool};
+use crate::math::{cores, has_pool, in_order};
 use crate::model::Constant;
 use rayon::prelude::*;
 use std::ops::{ControlFlow, Range};
@@ -191,15 +191,25 @@ impl<'a> Problem<'a> {
         point: Point<'_>,
         intervals: usize,
     ) -> Result<Prediction, IdentifyError> {
-        let duration = match recording.regime {
-            Regime::Motion => recording.duration(),
-            Regime::Rest => intervals as f64,
-        };
-        let setup = self.setup(recording, point.constants, [duration, intervals as f64])?;
+        let setup = self.on_grid(recording, point.constants, intervals)?;
         match recording.regime {
             Regime::Motion => in_motion(&setup, point, intervals),
             Regime::Rest => at_rest(&setup, point),
         }
+    }
+
+    /// The model of a recording on a grid of intervals.
+    pub(super) fn on_grid(
+        self,
+        recording: &'a Recording,
+        constants: &[f64],
+        intervals: usize,
+    ) -> Result<Setup<'a>, IdentifyError> {
+        let duration = match recording.regime {
+            Regime::Motion => recording.duration(),
+            Regime::Rest => intervals as f64,
+        };
+        self.setup(recording, constants, [duration, intervals as f64])
     }
 }
 
@@ -216,18 +226,26 @@ impl Point<'_> {
     }
 }
 
+/// The motion of a recording on a grid of intervals, and why it has fewer.
+pub(super) fn simulated(
+    setup: &Setup<'_>,
+    start: &Start,
+    intervals: usize,
+) -> (DiscreteTrajectory, Option<StepError>) {
+    let (model, h) = (&setup.model, setup.recording.duration() / intervals as f64);
+    let scalars = |from: f64, to: f64| model.scalars(&setup.inputs.within(from, to));
+    let go_on = |_: &DiscreteTrajectory| ControlFlow::Continue(());
+    simulate(model, start, h, intervals, scalars, go_on)
+}
+
 fn in_motion(
     setup: &Setup<'_>,
     point: Point<'_>,
     intervals: usize,
 ) -> Result<Prediction, IdentifyError> {
     let (model, recording) = (&setup.model, setup.recording);
-    let h = recording.duration() / intervals as f64;
     let (start, by_start) = start_of(setup, point)?;
-    let scalars = |from: f64, to: f64| model.scalars(&setup.inputs.within(from, to));
-    let (discrete, failure) = simulate(model, &start, h, intervals, scalars, |_| {
-        ControlFlow::Continue(())
-    });
+    let (discrete, failure) = simulated(setup, &start, intervals);
     if let Some(failure) = failure {
         return Err(recording.refused(failure));
     }
@@ -301,10 +319,7 @@ fn of_rest<'a>(
 fn at_rest(setup: &Setup<'_>, point: Point<'_>) -> Result<Prediction, IdentifyError> {
     let recording = setup.recording;
     let mut out = Prediction::zeros(recording.count(), point.count());
-    let mut times: Vec<f64> = recording.readings().map(|reading| reading.time).collect();
-    times.sort_unstable_by(f64::total_cmp);
-    times.dedup();
-    for time in times {
+    for time in in_order(recording.readings().map(|reading| reading.time)) {
         let voltages = setup.inputs.undelayed.at(time);
         let course = of_rest(setup, &voltages, point.constants.len())?;
         let read = course.read(&recording.channels, point.count());
@@ -316,6 +331,17 @@ fn at_rest(setup: &Setup<'_>, point: Point<'_>) -> Result<Prediction, IdentifyEr
         }
     }
     Ok(out)
+}
+
+/// The states of rest at the times of readings.
+pub(super) fn states_of_rest(setup: &Setup<'_>) -> Result<DiscreteTrajectory, IdentifyError> {
+    let model = &setup.model;
+    let times = in_order(setup.recording.readings().map(|reading| reading.time));
+    let at = |&time: &f64| rest_at(model, &setup.inputs.undelayed.at(time), "rest", 0.0);
+    let states: Result<Vec<_>, _> = times.iter().map(at).collect();
+    let states = states.map_err(|error| setup.recording.refused(error))?;
+    let in_turn = times.iter().copied().zip(&states);
+    Ok(Equilibrium::in_turn(model, times[0], in_turn))
 }
 
 /// Values of all unknowns: constants in the units of their components, and changes of coordinates and momenta at starts.

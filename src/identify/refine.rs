@@ -1,20 +1,20 @@
 //! The whole identification: grids are refined until their bias is far below the standard errors, then all is assessed.
 
 use crate::control::problem::{BoundaryState, Identification, Reading, Recording, Regime};
-use crate::dynamics::{Start, observations, simulate};
+use crate::dynamics::trajectory::Observations;
+use crate::dynamics::{DiscreteTrajectory, Start, observations};
 use crate::identify::assessment::{
     Experiment, HeldOut, LEVEL, Rises, Whiteness, check_deviations, ljung_box,
 };
 use crate::identify::error::IdentifyError;
 use crate::identify::fit::{Data, Fit, Series};
 use crate::identify::information::Information;
-use crate::identify::prediction::{Grid, Unknowns};
+use crate::identify::prediction::{Grid, Unknowns, simulated, states_of_rest};
 use crate::identify::setup::Problem;
 use crate::model::{Model, System, check_parameters, joint_unit};
 use crate::stop;
 use nalgebra::{DMatrix, DVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
-use std::ops::ControlFlow;
 
 /// Greatest bias of a constant by the grid, in standard errors, and greatest relative change of those.
 const BIAS: f64 = 0.1;
@@ -365,69 +365,65 @@ fn unread(task: &Identification, found: &Fit) -> Result<(), IdentifyError> {
     Ok(())
 }
 
-/// The start of a recording that was sought.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FoundStart {
+/// A recording as the fit predicts it.
+#[derive(Debug)]
+pub struct FittedMotion {
     /// Index of the recording.
     pub recording: usize,
-    /// Joints that have one coordinate: index, coordinate in rad or mm, and its rate in rad/ms or mm/ms.
-    pub joints: Vec<(usize, f64, f64)>,
+    /// Its model with the fitted constants.
+    pub model: Model,
+    /// The motion, or the states of rest at the times of readings.
+    pub discrete: DiscreteTrajectory,
+    /// All that is observed of it.
+    pub observations: Observations,
 }
 
-/// The starts of all recordings that were fitted with theirs.
-///
-/// # Errors
-/// A recording cannot be simulated.
-pub fn found_starts(
-    system: &System,
-    task: &Identification,
-    found: &Identified,
-) -> Result<Vec<FoundStart>, IdentifyError> {
-    let is_sought = |&&r: &&usize| task.recordings[r].seeks_start();
-    let of = |&recording: &usize| FoundStart::new(Problem { system, task }, found, recording);
-    found.fitted.iter().filter(is_sought).map(of).collect()
-}
+impl FittedMotion {
+    /// All recordings as the fit predicts them, those that are held out too, each as far as no stop ends its simulation.
+    pub fn all(problem: Problem<'_>, found: &Identified) -> Vec<Self> {
+        // What the fit has simulated can be simulated again, unless it is stopped.
+        let of = |recording| Self::new(problem, found, recording).ok();
+        (0..problem.task.recordings.len()).filter_map(of).collect()
+    }
 
-impl FoundStart {
     fn new(problem: Problem<'_>, found: &Identified, index: usize) -> Result<Self, IdentifyError> {
         let recording = &problem.task.recordings[index];
-        let intervals = 2.0 * found.grid.intervals[index] as f64;
-        let grid = [recording.duration(), intervals];
-        let setup = problem.setup(recording, found.fit.of_constants(), grid)?;
-        let (start, _) = setup.start(0, found.fit.unknowns.of_start(index))?;
-        let model = &setup.model;
-        let scalars = |from: f64, to: f64| model.scalars(&setup.inputs.within(from, to));
-        // Tables tell a state at its instant.
-        let h = recording.duration() / intervals;
-        let (first, _) = simulate(model, &start, h, 1, scalars, |_| ControlFlow::Continue(()));
-        let table = observations(model, &first);
-        let value = |name: &str| {
-            let column = table.columns.iter().find(|column| column.name == name);
-            column.and_then(|column| column.values.first().copied())
+        let held_out = found.held_out.iter().find(|one| one.recording == index);
+        let unknowns = &found.fit.unknowns;
+        let (coarse, start) = match held_out {
+            Some(one) => (one.intervals, &*one.start),
+            None => (found.grid.intervals[index], unknowns.of_start(index)),
         };
-        let joints = model.system.joints.iter().enumerate();
-        let joints = joints.filter_map(|(joint, of)| {
-            let rate = value(&format!("{}_rate", of.name))?;
-            Some((joint, value(&of.name)?, rate))
-        });
+        let intervals = 2 * coarse;
+        let setup = problem.on_grid(recording, found.fit.of_constants(), intervals)?;
+        let discrete = match recording.regime {
+            Regime::Rest => states_of_rest(&setup)?,
+            Regime::Motion => simulated(&setup, &setup.start(0, start)?.0, intervals).0,
+        };
         Ok(Self {
             recording: index,
-            joints: joints.collect(),
+            observations: observations(&setup.model, &discrete),
+            model: setup.model,
+            discrete,
         })
     }
 
-    /// Name, unit, coordinate and rate of each joint in International units.
-    pub fn in_si<'a>(
-        &'a self,
-        system: &'a System,
-    ) -> impl Iterator<Item = (&'a str, &'static str, f64, f64)> + 'a {
-        self.joints.iter().map(|&(joint, value, rate)| {
+    /// Name, unit, coordinate and rate at its start of each joint that has one coordinate, in International units.
+    pub fn start(&self) -> impl Iterator<Item = (&str, &'static str, f64, f64)> {
+        let system = &self.model.system;
+        let first = |name: &str| {
+            let mut columns = self.observations.columns.iter();
+            let column = columns.find(|column| column.name == name)?;
+            column.values.first().copied()
+        };
+        let joints = system.joints.iter().enumerate();
+        joints.filter_map(move |(joint, of)| {
+            let (value, rate) = (first(&of.name)?, first(&format!("{}_rate", of.name))?);
             let (unit, length, velocity) = match joint_unit(system, joint) {
                 "mm" => ("m", 1e-3, 1.0),
                 _ => ("rad", 1.0, 1e3),
             };
-            let name = system.joints[joint].name.as_str();
-            (name, unit, length * value, velocity * rate)
+            Some((of.name.as_str(), unit, length * value, velocity * rate))
         })
     }
 }

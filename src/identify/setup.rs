@@ -232,7 +232,7 @@ impl Setup<'_> {
 
 impl Recording {
     /// Returns true if something of the state at its start is unknown.
-    pub(super) fn seeks_start(&self) -> bool {
+    pub fn seeks_start(&self) -> bool {
         self.sought_start != SoughtStart::Nothing
     }
 

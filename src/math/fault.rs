@@ -191,6 +191,31 @@ pub fn no_smaller(value: f64, digits: usize) -> String {
     }
 }
 
+/// Prefixes of thousands, from 10⁻¹² to 10⁹.
+const PREFIXES: [&str; 8] = ["p", "n", "µ", "m", "", "k", "M", "G"];
+
+/// A unit of the International System, such as `Pa s`, with the prefix that suits an amount of it, and the factor to it: `kPa s` and 1e-3. A
+/// power, an angle and a reciprocal have none.
+pub fn prefixed(amount: f64, unit: &str) -> (String, f64) {
+    // Prefixes stand before the gram.
+    let (unit, factor) = match unit.strip_prefix("kg") {
+        Some(rest) => (format!("g{rest}"), 1e3),
+        None => (unit.to_owned(), 1.0),
+    };
+    let first = unit
+        .find(|c: char| !c.is_alphabetic())
+        .unwrap_or(unit.len());
+    let is_plain = first > 0 && !unit[first..].starts_with('^') && &unit[..first] != "rad";
+    let thousands = match is_plain && amount != 0.0 {
+        true => ((factor * amount.abs()).log10() / 3.0)
+            .floor()
+            .clamp(-4.0, 3.0) as i32,
+        false => 0,
+    };
+    let prefix = PREFIXES[(thousands + 4) as usize];
+    (format!("{prefix}{unit}"), factor / 1e3_f64.powi(thousands))
+}
+
 #[cfg(test)]
 #[path = "../../tests/units/math/digits.rs"]
 mod tests;

@@ -12,7 +12,8 @@ mod signal;
 pub use derivatives::{Derivatives, Gradient, Local, largest_eigenvalue_bound};
 pub(crate) use fault::refuse;
 pub use fault::{
-    DIRECTION, Fault, Key, WHOLE, no_smaller, not_negative, positive, shortest, significant, unique,
+    DIRECTION, Fault, Key, WHOLE, no_smaller, not_negative, positive, prefixed, shortest,
+    significant, unique,
 };
 pub use jet::Jet;
 pub use join::cores;

@@ -47,9 +47,14 @@ const PAGE: &str = "report.html";
 /// # Errors
 /// A file cannot be written.
 pub fn write_run(files: &mut FileSet, run: &Run<'_>) -> Result<(), WriteError> {
-    let page = || run.page.map(|content| page::html(run, content));
-    let (page, texts) = join(page, || tables_and_figures(run));
+    let (page, texts) = join(|| page(run), || tables_and_figures(run));
     write(files, run, page, texts)
+}
+
+/// The page of a run where it is wanted.
+fn page(run: &Run<'_>) -> Option<String> {
+    let content = run.page?;
+    Some(page::html(&run.system.name, &[*run], content, run.origin))
 }
 
 /// Writes files with their texts, those of ParaView and the page.
@@ -146,6 +151,5 @@ pub fn write_still(files: &mut FileSet, table: &str, run: &Run<'_>) -> Result<()
         let text = gltf::text(system, trajectory, skins, origin);
         texts.extend(text.map(|text| ("motion.gltf", text)));
     }
-    let page = run.page.map(|content| page::html(run, content));
-    write(files, run, page, texts)
+    write(files, run, page(run), texts)
 }

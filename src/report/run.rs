@@ -61,6 +61,8 @@ pub struct Run<'a> {
     pub targets: &'a [(usize, Vector3<f64>)],
     /// Places in mm that markers were to pass on the way, with their indices.
     pub waypoints: &'a [(usize, Vector3<f64>)],
+    /// Titles and plots over time that the page shows first, as its clock goes.
+    pub plots: &'a [(String, LinePlot)],
     /// Texts of the page; none where no page is wanted.
     pub page: Option<&'a PageContent>,
 }
@@ -91,7 +93,7 @@ pub struct PageContent {
     pub notes: Vec<String>,
     /// Rows of the table next to the motion.
     pub rows: Vec<(String, String)>,
-    /// Titles and plots that are not functions of time.
+    /// Titles and plots beside those of motions, which no clock follows.
     pub plots: Vec<(String, LinePlot)>,
     /// Names and texts of the input and the answer: `summary.json`, problem, scene.
     pub documents: Vec<(String, String)>,
@@ -136,6 +138,7 @@ impl<'a> Run<'a> {
             goal: None,
             targets: &[],
             waypoints: &[],
+            plots: &[],
             page: None,
         }
     }

@@ -21,8 +21,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::app::{CommandError, CommandInput, CommandOutput, make_folder};
-use crate::report::page::of_plots;
-use crate::report::{PageContent, atomic};
+use crate::report::{PageContent, atomic, page::html};
 use crate::study::compare::{Judged, judge, moved_marker};
 use crate::study::costs::{conclusion, cost_table};
 use crate::study::measure::StudyTask;
@@ -115,7 +114,7 @@ fn write(
     };
     put(
         "report.html",
-        &of_plots(&study.title, &said_of_all, &origin),
+        &html(&study.title, &[], &said_of_all, &origin),
     )?;
     let path = folder.join("study.json");
     record::write(&path, request, runs, results, judged, said)?;

@@ -34,9 +34,10 @@ const RUNS = [
   { name: "long_trunk", commands: [["new", "trunk", "--segments", "14", "FOLDER/scene"], ["simulate", "FOLDER/scene/swing.json"]], moves: true, parts: 42, charts: ["Voltages"], megabytes: 3 },
   { name: "aimed", commands: [["solve", "problems/pair.json", ...AIM]], moves: true, parts: 3, charts: ["Voltages"], megabytes: 1, target: [-12, 60, 0] },
   { name: "disturbed", commands: [["simulate", "problems/pair_disturbed.json"]], moves: true, parts: 3, charts: ["Disturbance", "Voltages"], megabytes: 1.5, sizes: [0, 0.25, 0.5, 1] },
+  { name: "identified", commands: solve("recorded_pair"), moves: true, parts: 3, charts: ["angle", "angle, residuals", "Voltages", "Joints"], megabytes: 2, motions: ["step", "sine"], row: /^\d+\.\d+ kPa ± 0\.\d+ / },
   { name: "study", commands: [["study", "FOLDER/study.json"]], charts: [], megabytes: 1 },
   { name: "sweep", commands: [["sweep", "FOLDER/sweep.json"]], variants: 6, charts: [], megabytes: 0.1 },
-  { name: "compared", commands: [["report", "FOLDER/elephant_trunk", "FOLDER/long_trunk"]], follows: true, charts: ["Joints", "Energies"], megabytes: 2 },
+  { name: "compared", commands: [["report", "FOLDER/elephant_trunk", "FOLDER/long_trunk"]], moves: true, parts: 18, charts: ["Joints", "Energies"], megabytes: 3, motions: ["elephant_trunk", "long_trunk"] },
 ];
 const SCREENS = [
   { name: "laptop", width: 1400, height: 900, scheme: "light" },
@@ -113,6 +114,7 @@ async function look(browser, run, screen, file) {
       await charts(page, run, told, screen);
       await pointed(page, told);
       if (run.sizes) await slide(page, run, told);
+      if (run.motions) await motions(page, run, told);
     }
   }
   if (!run.variants) await paper(page, run, told);
@@ -385,12 +387,33 @@ async function charts(page, run, told, screen) {
     return { edges: [...new Set(areas.map(([a, b]) => `${Math.round(a)} ${Math.round(b)}`))], cursors: areas.every((one) => one[2] === "block"), count: areas.length };
   });
   if (run.walks) expect(left.count === 1 && left.cursors, `${told}: the path has no mark`);
-  else if (run.moves || run.follows) {
+  else if (run.moves) {
     expect(left.count > 3 && left.cursors, `${told}: ${left.count} charts follow the clock`);
     if (screen.width < 600) expect(left.edges.length === 1, `${told}: time axes begin at ${left.edges}`);
   }
   const empty = await page.evaluate(() => window.proboscis.charts.made.filter((one) => !one.chart).length);
   expect(empty === 0, `${told}: ${empty} charts are not drawn`);
+}
+
+/** Another motion takes the place of the first one: its scene, its clock and its charts; constants have units that suit them. */
+async function motions(page, run, told) {
+  const shown = () => page.evaluate(() => {
+    const { scene, charts } = window.proboscis;
+    return { name: scene.data.name, canvases: document.querySelectorAll("#view canvas[role]").length, charts: charts.made.length, times: scene.times.length };
+  });
+  const names = await page.locator("#motion option").allTextContents();
+  expect(names.join() === run.motions.join(), `${told}: the motions are ${names}`);
+  for (const [i, name] of [...run.motions.entries()].reverse()) {
+    await page.locator("#motion").selectOption(String(i));
+    const found = await shown();
+    expect(found.name === name && found.canvases === 1 && found.charts > 3 && found.times > 10, `${told}: ${name} is shown as ${JSON.stringify(found)}`);
+    const at = () => page.evaluate(() => window.proboscis.scene.parts.map((part) => Array.from(part.now).join()).join());
+    const before = await at();
+    await page.locator("#time").fill("300");
+    expect((await at()) !== before, `${told}: the slider does not move ${name}`);
+  }
+  const values = await page.locator("#answer td").allTextContents();
+  if (run.row) expect(values.some((value) => run.row.test(value)), `${told}: no constant among ${values}`);
 }
 
 /** The slider over a disturbance shows a motion of each size with and without feedback on the same axes, and the same reference. */

@@ -1,5 +1,6 @@
 //! Identification by the program: the kept problem, and mistakes in problems and recordings.
 
+use crate::page::page_data;
 use crate::runs::{read, run, workshop};
 use std::fs;
 use std::path::Path;
@@ -40,6 +41,33 @@ fn the_kept_recordings_tell_modulus_and_viscosity() {
     let page = fs::read_to_string(folder.path().join("found/report.html")).unwrap();
     let residuals = page.matches("\"label\":\"residual [σ]\"").count();
     assert!(residuals == 4 && page.contains("\"name\":\"Correlation\""));
+    let data = page_data(&page);
+    let scenes = data["scenes"].as_array().unwrap().iter();
+    let names: Vec<_> = scenes.clone().map(|scene| &scene["name"]).collect();
+    assert_eq!(names, ["step", "sine"]);
+    assert!(
+        scenes
+            .clone()
+            .all(|scene| scene["span"][1].as_f64() > Some(0.1))
+    );
+    let charts = data["charts"].as_array().unwrap().iter();
+    let followed = charts.filter(|chart| chart["of"] == "sine" && chart["time"] == true);
+    let titles: Vec<_> = followed
+        .map(|chart| chart["title"].as_str().unwrap())
+        .collect();
+    assert!(
+        titles[0].ends_with(", held out") && titles.contains(&"Voltages"),
+        "{titles:?}"
+    );
+    let modulus = data["rows"][0][1].as_str().unwrap();
+    assert!(
+        modulus.contains(" kPa ± 0.") && modulus.contains("(95 %: "),
+        "{modulus}"
+    );
+    assert!(
+        out.contains(&format!("materials.silicone.shear_modulus: {modulus}\n")),
+        "{out}"
+    );
     let table = fs::read_to_string(folder.path().join("found/residuals.csv")).unwrap();
     assert!(table.lines().count() > 300 && table.contains("sine"));
 }

@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 use proboscis::dynamics::trajectory::{Column, Observations, Trajectory};
 use proboscis::model::System;
 use proboscis::model::system::{ElectricConstants, VACUUM_PERMITTIVITY};
+use proboscis::report::lines::LinePlot;
 use proboscis::report::origin::Origin;
 use proboscis::report::skins::Skins;
 use proboscis::report::{PageContent, Run, page};
@@ -45,8 +46,8 @@ fn a_page_has_the_motion_and_the_curves_of_its_run() {
         targets: &[(0, Vector3::new(1.0, -2.0, 3.5))],
         ..run(&system, &trajectory)
     };
-    let data = page_data(&page::html(&run, run.page.unwrap()));
-    assert_scene(&data["scene"], &run);
+    let data = page_data(&html(&run));
+    assert_scene(&data["scenes"][0], &run);
     assert_charts(&data["charts"], &run);
 }
 
@@ -58,6 +59,11 @@ fn run<'a>(system: &'a System, trajectory: &'a Trajectory) -> Run<'a> {
         page: Some(content),
         ..Run::from_trajectory(system, trajectory, skins, observations, origin)
     }
+}
+
+/// The page of a run alone.
+fn html(run: &Run<'_>) -> String {
+    page::html(&run.system.name, &[*run], run.page.unwrap(), run.origin)
 }
 
 /// Returns true if a number of single precision is the one of double precision.
@@ -157,7 +163,7 @@ fn a_page_has_its_code_in_less_than_half_a_megabyte_and_asks_for_nothing() {
     trajectory.joints.resize(count as usize + 1, vec![0.0; 6]);
     trajectory.joints[7777][2] = 1.5;
     let run = run(&system, &trajectory);
-    let html = page::html(&run, run.page.unwrap());
+    let html = html(&run);
     let data = page_data(&html);
     let size = data.to_string().len();
     assert!(html.len() - size < 500_000, "{} of code", html.len() - size);
@@ -210,7 +216,7 @@ fn each_muscle_looks_the_same_in_all_charts() {
         observations: &observations,
         ..run(&system, &trajectory)
     };
-    let data = page_data(&page::html(&run, run.page.unwrap()));
+    let data = page_data(&html(&run));
     let mut looks: BTreeMap<String, Vec<(Value, Value)>> = BTreeMap::new();
     let named = [
         "Voltages",
@@ -251,8 +257,8 @@ fn a_page_shows_the_ground_and_names_the_motion_beside() {
         name: "optimal voltages",
         ..run(&system, &trajectory)
     };
-    let data = page_data(&page::html(&run, run.page.unwrap()));
-    let scene = &data["scene"];
+    let data = page_data(&html(&run));
+    let scene = &data["scenes"][0];
     assert_eq!(scene["names"][0], "optimal voltages");
     assert_eq!(scene["names"][1], "constant voltages");
     // Below the lowest end of a muscle in the ground, and around all of them.
@@ -269,4 +275,44 @@ fn a_page_shows_the_ground_and_names_the_motion_beside() {
         / 2.0;
     assert!(ends.iter().all(|at| at.xz().norm() < radius), "{radius}");
     assert_eq!(unpacked(&scene["ground"]["faces"]).len(), 0);
+}
+
+#[test]
+fn a_page_of_several_motions_tells_of_which_its_charts_are() {
+    let (system, trajectory) = swing();
+    let plots = [(
+        "angle".to_owned(),
+        LinePlot::over_time("angle [rad]", Vec::new()),
+    )];
+    let of = |name| Run {
+        name,
+        plots: &plots,
+        ..run(&system, &trajectory)
+    };
+    let runs = [of("step"), of("sine")];
+    let content = runs[0].page.unwrap();
+    let data = page_data(&page::html("robot", &runs, content, runs[0].origin));
+    assert_eq!(data["system"], "robot");
+    let scenes = data["scenes"].as_array().unwrap().iter();
+    let names: Vec<_> = scenes
+        .map(|scene| scene["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["step", "sine"]);
+    for name in names {
+        let mut charts = data["charts"].as_array().unwrap().iter();
+        let first = charts.find(|chart| chart["of"] == name).unwrap();
+        assert_eq!(
+            (&first["title"], &first["time"]),
+            (&"angle".into(), &true.into())
+        );
+        assert!(charts.any(|chart| chart["of"] == name && chart["title"] == "Voltages"));
+    }
+    let alone = page_data(&html(&runs[0]));
+    assert!(
+        alone["charts"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .all(|chart| chart["of"].is_null())
+    );
 }

@@ -68,7 +68,14 @@ fn results_are_compared_curve_by_curve_and_row_by_row() {
             assert_eq!(found[r + 1], row[1]);
         }
     }
-    assert_eq!(both["span"][1], each[0]["scene"]["span"][1]);
+    assert_eq!(both["span"][1], each[0]["scenes"][0]["span"][1]);
+    for (r, name) in ["a", "b"].into_iter().enumerate() {
+        let (shown, own) = (&both["scenes"][r], &each[r]["scenes"][0]);
+        assert_eq!(
+            (&shown["name"], &shown["parts"]),
+            (&name.into(), &own["parts"])
+        );
+    }
 }
 
 #[test]

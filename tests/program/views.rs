@@ -120,7 +120,7 @@ fn auto_looks_along_the_axis_of_a_planar_arm() {
     );
     assert_eq!(status, 0, "{error}");
     let html = fs::read_to_string(place.join("out/report.html")).unwrap();
-    let scene = &page_data(&html)["scene"];
+    let scene = &page_data(&html)["scenes"][0];
     let toward: Vec<f64> = serde_json::from_value(scene["toward"].clone()).unwrap();
     assert!(toward[2].abs() > 1.0 - 1e-9, "{toward:?}");
 }

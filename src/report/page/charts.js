@@ -10,7 +10,15 @@ class Charts {
   constructor(charts, holder, clock) {
     Object.assign(this, { holder, clock, made: [], folded: [] });
     for (const chart of charts) this.section(chart);
-    dark.addEventListener("change", () => this.made.forEach((panel) => panel.renew()));
+  }
+
+  renew() {
+    for (const panel of this.made) panel.renew();
+  }
+
+  /** Another motion is shown. */
+  leave() {
+    for (const panel of this.made) panel.leave();
   }
 
   /** Draws all of them for paper, or those in sight for the screen again. */
@@ -18,10 +26,8 @@ class Charts {
     // Names of many curves are told on paper too.
     if (on) this.folded = [...this.holder.querySelectorAll("details:not([open])")];
     for (const names of this.folded) names.open = on;
-    for (const panel of this.made) {
-      panel.printed = on;
-      panel.renew();
-    }
+    for (const panel of this.made) panel.printed = on;
+    this.renew();
   }
 
   section(chart) {
@@ -61,11 +67,12 @@ class Drawn {
     this.plot = element("div", { class: "plot" }, this.canvas, this.cursor);
     if (height) this.plot.style.height = `${height}px`;
     holder.append(this.plot);
-    new IntersectionObserver(([entry]) => {
+    this.sight = new IntersectionObserver(([entry]) => {
       this.visible = entry.isIntersecting;
       if (this.visible && !this.chart) this.renew();
       if (this.visible) this.follow();
-    }, { rootMargin: "200px" }).observe(this.plot);
+    }, { rootMargin: "200px" });
+    this.sight.observe(this.plot);
     this.cursor.classList.toggle("level", this.level);
     if (!clock) return;
     clock.listen(() => this.visible && this.follow());
@@ -77,6 +84,11 @@ class Drawn {
     };
     this.canvas.addEventListener("pointerdown", pick);
     this.canvas.addEventListener("pointermove", pick);
+  }
+
+  leave() {
+    this.sight.disconnect();
+    this.chart?.destroy();
   }
 
   renew() {

@@ -8,7 +8,7 @@ use crate::report::axes::Scale;
 use crate::report::lines::{Aspect, LinePlot, Mark, Series, over_time};
 use crate::report::page::scene::numbers;
 use crate::report::style::{self, Dash};
-use crate::report::{PageContent, Run, curves, tip_path};
+use crate::report::{Run, curves, tip_path};
 
 /// Panels beyond which voltages are shown as colours.
 const PANELS: usize = 12;
@@ -18,9 +18,14 @@ const POINTS: usize = 2000;
 /// Planes in which paths are drawn, horizontal axis first.
 pub(super) const PLANES: [[usize; 2]; 3] = [[0, 1], [2, 1], [0, 2]];
 
-/// All charts of a run, in the order of the page.
-pub(super) fn charts(run: &Run<'_>, content: &PageContent) -> Vec<Value> {
-    let mut charts = Vec::new();
+/// The charts of a run, in the order of the page.
+pub(super) fn charts(run: &Run<'_>) -> Vec<Value> {
+    let over_time = |plot| {
+        let mut chart = of_plot(plot);
+        chart["time"] = true.into();
+        chart
+    };
+    let mut charts: Vec<Value> = run.plots.iter().map(over_time).collect();
     if run.trajectory.times.len() > 1 && run.branch.is_none() {
         for kind in InputKind::ALL {
             charts.extend(of_inputs(run, kind));
@@ -28,19 +33,13 @@ pub(super) fn charts(run: &Run<'_>, content: &PageContent) -> Vec<Value> {
         charts.extend(paths(run));
         charts.extend(charts_over_time(run));
     }
-    charts.extend(plots(content).into_iter().map(|mut chart| {
-        // The path of equilibria has their fraction of the voltages upwards.
-        chart["level"] = run.branch.is_some().into();
-        chart
-    }));
     charts
 }
 
-/// Returns the plots that are not functions of time.
-pub(super) fn plots(content: &PageContent) -> Vec<Value> {
-    let plots = content.plots.iter();
-    let chart = |(title, plot): &(String, LinePlot)| json!({ "title": title, "kind": "plot", "panels": [panel("", plot)] });
-    plots.map(chart).collect()
+/// The chart of a plot with its title.
+pub(super) fn of_plot(titled: &(String, LinePlot)) -> Value {
+    let (title, plot) = titled;
+    json!({ "title": title, "kind": "plot", "panels": [panel("", plot)] })
 }
 
 /// Inputs of a kind: the sources between the same two bodies share a panel; many panels become rows of colours.

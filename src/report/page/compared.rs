@@ -18,14 +18,15 @@ pub fn data(html: &str) -> Option<Value> {
     let (_, rest) = html.split_once(DATA[0])?;
     let (text, _) = rest.split_once(DATA[1])?;
     let data: Value = serde_json::from_str(text).ok()?;
-    data["charts"].is_array().then_some(data)
+    (data["charts"].is_array() && data["scenes"].is_array()).then_some(data)
 }
 
 /// The page of several results with their names, which lead to `pages` of their own where there are some.
 pub fn html(results: &[(String, Value)], pages: &[String], origin: &Origin) -> String {
     let names: Vec<&str> = results.iter().map(|(name, _)| name.as_str()).collect();
     let of_each = |key: &str| -> Vec<&Value> { results.iter().map(|(_, one)| &one[key]).collect() };
-    let spans = results.iter().map(|(_, one)| &one["scene"]["span"]);
+    let scenes = scenes(results);
+    let spans = scenes.iter().map(|scene| &scene["span"]);
     let end = |span: &Value| span[1].as_f64().unwrap_or(0.0);
     let data = json!({
         "title": "side by side",
@@ -36,12 +37,32 @@ pub fn html(results: &[(String, Value)], pages: &[String], origin: &Origin) -> S
         "answers": of_each("answer"),
         "solved": of_each("isSolved"),
         "table": table(results),
-        "span": spans.filter(|span| span.is_array()).max_by(|a, b| end(a).total_cmp(&end(b))),
+        "span": spans.max_by(|a, b| end(a).total_cmp(&end(b))),
         "command": origin.command,
+        "scenes": scenes,
         "charts": charts(results),
     });
     let title = format!("{}: side by side", names.join(", "));
     page(&title, origin, &data)
+}
+
+/// The motions of all results by the names of these, and by their own where a result has several; a path of equilibria has no time.
+fn scenes(results: &[(String, Value)]) -> Vec<Value> {
+    let of = |result: &(String, Value)| -> Vec<Value> {
+        let (name, data) = result;
+        let all = list(&data["scenes"]);
+        let is_one = all.len() == 1;
+        let named = all.filter(|scene| scene["span"].is_array()).map(|scene| {
+            let mut scene = scene.clone();
+            scene["name"] = match scene["name"].as_str() {
+                Some(own) if !is_one => format!("{name}, {own}").into(),
+                _ => name.as_str().into(),
+            };
+            scene
+        });
+        named.collect()
+    };
+    results.iter().flat_map(of).collect()
 }
 
 /// Rows of all tables, in the order in which they come first: the name, the value of each result.
@@ -94,6 +115,10 @@ fn charts(results: &[(String, Value)]) -> Vec<Value> {
     for (r, (name, data)) in results.iter().enumerate() {
         for (chart, panel, series) in curves(data) {
             let is_over_time = chart["time"] == true;
+            let of_chart = match (chart["of"].as_str(), &chart["title"]) {
+                (Some(motion), Value::String(title)) => format!("{motion}: {title}").into(),
+                (_, title) => title.clone(),
+            };
             let title = if is_over_time {
                 &series["name"]
             } else {
@@ -108,12 +133,11 @@ fn charts(results: &[(String, Value)]) -> Vec<Value> {
             };
             // Results are told apart by colour alone.
             curve["dashed"] = (!is_over_time && series["dashed"] == true).into();
-            let same =
-                |one: &&mut Shared| one.chart["title"] == chart["title"] && one.title == *title;
+            let same = |one: &&mut Shared| one.chart["title"] == of_chart && one.title == *title;
             match shared.iter_mut().find(same) {
                 Some(one) => one.series.push(curve),
                 None => shared.push(Shared {
-                    chart: json!({ "title": chart["title"], "time": chart["time"], "kind": "panels" }),
+                    chart: json!({ "title": of_chart, "time": chart["time"], "kind": "panels" }),
                     title: title.clone(),
                     panel: panel.clone(),
                     series: vec![curve],

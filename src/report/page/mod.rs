@@ -15,28 +15,29 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
 
-/// The page of a run, or of a path of equilibria.
-pub fn html(run: &Run<'_>, content: &PageContent) -> String {
-    let run = &run.along_branch();
-    let of_disturbance = disturbance::chart(run.disturbed).into_iter();
-    let charts = of_disturbance.chain(charts::charts(run, content)).collect();
-    let mut data = data(&run.system.name, content, charts, run.origin);
-    data["scene"] = scene::scene(run);
-    let title = format!("{}: {}", run.system.name, content.title);
-    page(&title, run.origin, &data)
-}
-
-/// A page of plots and words without a motion; `subject` stands before the title.
-pub fn of_plots(subject: &str, content: &PageContent, origin: &Origin) -> String {
-    let data = data(subject, content, charts::plots(content), origin);
-    page(&format!("{subject}: {}", content.title), origin, &data)
-}
-
-/// The contents of a page but its scene.
-fn data(subject: &str, content: &PageContent, charts: Vec<Value>, origin: &Origin) -> Value {
+/// The page of motions or paths of equilibria, of which it shows one with its charts, or of plots and words alone; `subject` stands before the
+/// title, and the reader chooses among several motions by their names.
+pub fn html(subject: &str, runs: &[Run<'_>], content: &PageContent, origin: &Origin) -> String {
+    let (mut scenes, mut charts) = (Vec::new(), Vec::new());
+    for run in runs.iter().map(Run::along_branch) {
+        scenes.push(scene::scene(&run));
+        let own = disturbance::chart(run.disturbed).into_iter();
+        charts.extend(own.chain(charts::charts(&run)).map(|mut chart| {
+            // The motion with which it is shown.
+            chart["of"] = (runs.len() > 1).then_some(run.name).into();
+            chart
+        }));
+    }
+    // The path of equilibria has their fraction of the voltages upwards.
+    let is_path = runs.iter().any(|run| run.branch.is_some());
+    charts.extend(content.plots.iter().map(|plot| {
+        let mut chart = charts::of_plot(plot);
+        chart["level"] = is_path.into();
+        chart
+    }));
     let documents = content.documents.iter();
     let documents = documents.map(|(name, text)| json!({ "name": name, "text": text }));
-    json!({
+    let data = json!({
         "title": content.title,
         "system": subject,
         "isSolved": content.is_solved,
@@ -44,9 +45,11 @@ fn data(subject: &str, content: &PageContent, charts: Vec<Value>, origin: &Origi
         "notes": content.notes,
         "rows": content.rows,
         "command": origin.command,
+        "scenes": scenes,
         "charts": charts,
         "documents": documents.collect::<Vec<_>>(),
-    })
+    });
+    page(&format!("{subject}: {}", content.title), origin, &data)
 }
 
 /// A page with its title, its origin, and its contents.

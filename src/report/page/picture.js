@@ -42,6 +42,15 @@ class Picture {
     });
   }
 
+  /** Another picture takes its place. */
+  leave() {
+    clearTimeout(this.rest);
+    this.asked = true;
+    this.draw = this.measure = () => {};
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
+  }
+
   draw(resolution) {
     clearTimeout(this.rest);
     if (this.renderer.getPixelRatio() !== resolution) this.renderer.setPixelRatio(resolution);

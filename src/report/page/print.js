@@ -1,19 +1,19 @@
 // The page on paper: light, as wide as a sheet, with all charts and a picture of the scene.
 
 /** Draws everything for paper before the browser prints, and what it was afterwards. */
-function printing({ scene, charts }) {
+function printing(page) {
   const still = element("canvas", { id: "still", "aria-hidden": true });
   window.addEventListener("beforeprint", () => {
-    scene?.canvas.after(still);
-    scene?.picture.theme();
-    scene?.still(still);
-    charts.print(true);
+    page.scene?.canvas.after(still);
+    page.scene?.picture.theme();
+    page.scene?.still(still);
+    page.charts.print(true);
   });
   window.addEventListener("afterprint", () => {
     still.remove();
-    scene?.picture.theme();
-    scene?.resize();
-    charts.print(false);
+    page.scene?.picture.theme();
+    page.scene?.resize();
+    page.charts.print(false);
   });
 }
 

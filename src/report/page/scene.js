@@ -42,7 +42,8 @@ class Scene {
     for (const group of Object.values(this.groups)) if (group) this.root.add(group);
     for (const name of ["axes", "frames", "snapshots"]) if (this.groups[name]) this.groups[name].visible = false;
     steer(this.camera, this.canvas);
-    new ResizeObserver(() => this.resize()).observe(holder);
+    this.resized = new ResizeObserver(() => this.resize());
+    this.resized.observe(holder);
     this.resize();
     this.ranges = this.scales();
     this.quantity = Object.keys(this.ranges)[0];
@@ -326,6 +327,12 @@ class Scene {
 
   draw() {
     this.picture?.ask();
+  }
+
+  /** Another motion is shown. */
+  leave() {
+    this.resized.disconnect();
+    this.picture.leave();
   }
 }
 

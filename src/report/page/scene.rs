@@ -42,6 +42,7 @@ pub(super) fn scene(run: &Run<'_>) -> Value {
     let highest = [run.skins.highest()];
     let scale = style::voltage_scale(run.trajectory.voltages(run.system).chain([&highest[..]]));
     json!({
+        "name": run.name,
         "span": run.branch.is_none().then(|| [times[0] / 1e3, times[times.len() - 1] / 1e3]),
         "branch": run.branch.map(|branch| json!({ "fractions": numbers(branch.fractions.iter().copied()), "shown": branch.shown })),
         "times": numbers(instants.iter().map(|&k| times[k] / 1e3)),
