@@ -6,11 +6,8 @@
 //!
 //! A span r, read in the middle of the interval of the length h, is shortened by `w = −c r/(h |r|)` at both ends, so that m is a mean force. Its
 //! force f is along it, so that `f·∂w = 0`: the sum has the derivatives of a constant w, and `∂²m/∂r∂r = (m/|r|²) P` with `P = 1 − r rᵀ/|r|²` too,
-//! also where free parameters move the ends: `r = r₀ + Σ c_a e_a` (functional/laws.rs). Such a force follows from S as `m = ∇S·w`, and by h as
-//!
-//! ```text
-//! ∂m/∂h = ∂S_h − m/h,     ∂²m/∂h² = ∂S_hh − 2 ∂S_h/h + 2 m/h²,     ∂S_h = ∇∂S/∂h·w,  ∂S_hh = ∇∂²S/∂h²·w .
-//! ```
+//! also where free parameters move the ends: `r = r₀ + Σ c_a e_a` (functional/laws.rs). The factor 1/h of w gives, with `s₁ = ∇(∂S/∂h)·w` and
+//! `s₂ = ∇(∂²S/∂h²)·w`, the derivatives `∂m/∂h = s₁ − m/h` and `∂²m/∂h² = s₂ − 2 s₁/h + 2 m/h²`.
 
 use crate::functional::curved::{Gradient, Square, each_once};
 use crate::functional::{

@@ -91,7 +91,9 @@ fn a_damped_hinge_decays_exponentially() {
             .unwrap();
             let rates = match coordinates {
                 Coordinates::Reduced => vec![rate],
-                Coordinates::Redundant => model.redundant_rates(&[0.0], &[rate]),
+                Coordinates::Redundant => model
+                    .rates_at(&[0.0], &[rate], &Default::default())
+                    .unwrap(),
             };
             let start = Start::with_rates(&model, at_reference(&model), &rates);
             let discrete = motion(&model, &start, h, n, &[]);
@@ -144,7 +146,9 @@ fn a_damped_slider_decays_by_the_same_factor_in_every_step() {
         .unwrap();
         let rates = match coordinates {
             Coordinates::Reduced => vec![velocity],
-            Coordinates::Redundant => model.redundant_rates(&[0.0], &[velocity]),
+            Coordinates::Redundant => model
+                .rates_at(&[0.0], &[velocity], &Default::default())
+                .unwrap(),
         };
         let start = Start::with_rates(&model, at_reference(&model), &rates);
         let seen = observations(&model, &motion(&model, &start, h, 50, &[]));

@@ -97,7 +97,9 @@ fn the_first_row_is_the_start() {
         let model = Model::new(scene, Some(coordinates), h, &[]).unwrap();
         let by_coordinate = match coordinates {
             Coordinates::Reduced => rates.to_vec(),
-            Coordinates::Redundant => model.redundant_rates(&[0.1, 0.2], &rates),
+            Coordinates::Redundant => model
+                .rates_at(&[0.1, 0.2], &rates, &Default::default())
+                .unwrap(),
         };
         let start = Start::with_rates(&model, model.coordinates_at(&[0.1, 0.2]), &by_coordinate);
         let discrete = motion(
@@ -202,7 +204,9 @@ fn angles_go_on_beyond_a_turn() {
         let model = Model::new(scene.clone(), Some(coordinates), 0.5, &[]).unwrap();
         let rates = match coordinates {
             Coordinates::Reduced => vec![1.0],
-            Coordinates::Redundant => model.redundant_rates(&[0.0; 2], &[0.0, 1.0]),
+            Coordinates::Redundant => model
+                .rates_at(&[0.0; 2], &[0.0, 1.0], &Default::default())
+                .unwrap(),
         };
         let start = Start::with_rates(&model, at_reference(&model), &rates);
         let discrete = motion(&model, &start, 0.5, 60, &[]);

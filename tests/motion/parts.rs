@@ -100,7 +100,9 @@ fn a_pendulum_turns_at_the_rate_of_another_method() {
                 let model = model(&system, coordinates, 1.0);
                 let rates = match model.coordinate_count() {
                     1 => vec![2e-3],
-                    _ => model.redundant_rates(&[1.0], &[2e-3]),
+                    _ => model
+                        .rates_at(&[1.0], &[2e-3], &Default::default())
+                        .unwrap(),
                 };
                 let start = Start::with_rates(&model, model.coordinates_at(&[1.0]), &rates);
                 let h = 200.0 / count as f64;

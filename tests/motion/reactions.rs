@@ -82,7 +82,9 @@ fn a_hinge_turns_its_pendulum_as_another_method_says() {
                 let by_joint = |value: f64| vec![value * sign; joints];
                 let rates = match model.coordinate_count() {
                     1 => vec![2e-3 * sign],
-                    _ => model.redundant_rates(&by_joint(1.0), &by_joint(2e-3)),
+                    _ => model
+                        .rates_at(&by_joint(1.0), &by_joint(2e-3), &Default::default())
+                        .unwrap(),
                 };
                 let start = Start::with_rates(&model, model.coordinates_at(&by_joint(1.0)), &rates);
                 let discrete = motion(&model, &start, 200.0 / count as f64, count, &[]);

@@ -24,7 +24,7 @@ fn run(
     let z = model.coordinates_at(joints);
     let rates = match coordinates {
         Coordinates::Reduced => model.coordinates_at(rates)[..model.coordinate_count()].to_vec(),
-        Coordinates::Redundant => model.redundant_rates(joints, rates),
+        Coordinates::Redundant => model.rates_at(joints, rates, &Default::default()).unwrap(),
     };
     let start = match system.solids.is_empty() {
         true => Start::with_rates(&model, z, &rates),
