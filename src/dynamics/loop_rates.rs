@@ -164,7 +164,7 @@ impl Problem {
     }
 }
 
-/// What is named: joints with their rates, and bodies, which keep theirs.
+/// Named parts: joints with their rates, and bodies, which keep theirs.
 struct Named<'a> {
     joints: &'a [(usize, f64)],
     bodies: &'a [usize],
@@ -262,6 +262,18 @@ impl<'m> IndependentChanges<'m> {
         })
     }
 
+    /// The changes of coordinates that determine the others at coordinates z₀.
+    pub(super) fn of(model: &'m Model, z: Vec<f64>, coordinates: &[usize]) -> Self {
+        let count = model.coordinate_count();
+        let of = |row: usize, column: usize| f64::from(u8::from(coordinates[column] == row));
+        Self {
+            are_memories: coordinates.iter().map(|&i| model.is_memory(i)).collect(),
+            model,
+            z,
+            basis: DMatrix::from_fn(count, coordinates.len(), of),
+        }
+    }
+
     /// The basis, a column for each change.
     pub fn basis(&self) -> &DMatrix<f64> {
         &self.basis
@@ -350,7 +362,7 @@ impl<'m> IndependentChanges<'m> {
 }
 
 /// Gradients of the constraints, a column for each; none of too many coordinates.
-fn gradients(model: &Model, z: &[f64]) -> Option<DMatrix<f64>> {
+pub(super) fn gradients(model: &Model, z: &[f64]) -> Option<DMatrix<f64>> {
     let mut kinetic = Kinetic::new(model);
     kinetic.assemble(&mut model.action.map.placed(z));
     Some(kinetic.small()?.1)

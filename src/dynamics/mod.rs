@@ -8,8 +8,8 @@
 //! - `resolution`: steps that are refused, and the error of those that are not; `singular_configurations`: places where laws end, and the end of
 //!   the first-order dielectric.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
-//! - `state_space`: steps linearised by state and inputs; `loop_rates`: rates of the joints of closed loops, completed from those that are named;
-//!   `loop_rates`: changes of coordinates that constraints leave free.
+//! - `state_space`: steps linearised by state and inputs; `independent`: coordinates of closed loops that determine the others; `loop_rates`: rates
+//!   of their joints, completed from those that are named, and changes of coordinates that constraints leave free.
 //! - `equilibrium`: states of rest.
 
 mod contraction;
@@ -18,6 +18,7 @@ mod equilibrium;
 mod error;
 mod exchange;
 mod galerkin;
+mod independent;
 mod loop_rates;
 mod midpoint;
 mod momenta;
@@ -43,6 +44,7 @@ pub use equilibrium::{
 pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};
 pub use galerkin::GalerkinEquations;
+pub use independent::{Independent, NoState, Slopes};
 pub use loop_rates::{IndependentChanges, rates_in_loops};
 pub use midpoint::{Midpoint, Stepper};
 pub use momenta::{Start, last_momentum, rates_of_momentum};
@@ -54,8 +56,6 @@ pub use singular_configurations::{
     part_without_energy, reversed_muscle,
 };
 pub use solving::{Drive, Inputs, Integrator, MultigridUse, Newton, Solving};
-pub use state_space::{
-    LinearStep, Linearisation, NoState, StepInput, momentum_derivatives, step_inputs,
-};
+pub use state_space::{LinearStep, Linearisation, StepInput, momentum_derivatives, step_inputs};
 pub use stepper::{Equations, Steps};
 pub use trajectory::{DiscreteTrajectory, Reading, StepState, StepperReport, TangentState};

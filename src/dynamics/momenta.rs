@@ -64,8 +64,8 @@ fn rates_by(
     rates
 }
 
-/// Rates of the coordinates z with given momenta, those of prescribed ones at a time in ms; with nodes iterated for, as it is asked for
-/// often.
+/// Rates of the coordinates z with given momenta that meet the constraints, those of prescribed ones at a time in ms; with nodes iterated for, as
+/// it is asked for often.
 pub fn rates_of_momentum(model: &Model, z: &[f64], time: f64, momentum: &[f64]) -> Vec<f64> {
     let map = &model.action.map;
     let decomposed = if map.of_nodes.is_empty() {
@@ -73,7 +73,12 @@ pub fn rates_of_momentum(model: &Model, z: &[f64], time: f64, momentum: &[f64]) 
     } else {
         0
     };
-    rates_by(model, &mut map.placed(z), time, momentum, decomposed)
+    let instant = &mut map.placed(z);
+    let within = match map.multipliers {
+        0 => None,
+        _ => Kinetic::new(model).rates(instant, time, momentum),
+    };
+    within.unwrap_or_else(|| rates_by(model, instant, time, momentum, decomposed))
 }
 
 /// The same where what is prescribed rests and has no momentum.

@@ -7,26 +7,16 @@
 //! ```
 //!
 //! with scalars s of the interval that have an equation. Their second derivatives give `δx₊ = A δx + B δu` exactly. What remembers has no
-//! momentum: its row holds with p = 0 at all instants. A voltage V that acts by its square alone is replaced by `w = V²`, as its own
+//! momentum: its row holds with p = 0 at all instants. In closed loops the state has independent coordinates q and their momenta
+//! ([`Independent`]): L_d is that of all coordinates, which follow from them. A voltage V that acts by its square alone is replaced by `w = V²`, as its own
 //! derivative vanishes with it: the derivative by w is the same at all V.
 
 use crate::coordinates::{Configuration, Scratch};
+use crate::dynamics::independent::Independent;
 use crate::functional::{Order, Sample};
 use crate::math::Vector;
-use crate::model::{Coordinates, Model, Role};
+use crate::model::{Model, Role};
 use nalgebra::{DMatrix, DVector};
-use thiserror::Error;
-
-/// Reason why a model has no state of this kind.
-#[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
-pub enum NoState {
-    /// Its coordinates are redundant.
-    #[error("the coordinates are redundant, as of closed loops")]
-    Redundant,
-    /// Some of its coordinates are turns relative to a rotation that changes.
-    #[error("a spherical joint or a free body turns in all directions")]
-    Charts,
-}
 
 /// An input by which a step is differentiated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +43,8 @@ pub struct LinearStep {
 pub struct Linearisation<'m> {
     model: &'m Model,
     inputs: Vec<StepInput>,
-    /// Coordinates that are no function of time.
+    independent: Independent,
+    /// The independent coordinates.
     free: Vec<usize>,
     /// Those of them with a momentum.
     inert: Vec<usize>,
@@ -87,30 +78,21 @@ pub fn step_inputs(model: &Model) -> Vec<StepInput> {
 }
 
 impl<'m> Linearisation<'m> {
-    /// Prepares the linearisation by these inputs.
-    ///
-    /// # Errors
-    /// The coordinates are no state.
-    pub fn new(model: &'m Model, inputs: &[StepInput]) -> Result<Self, NoState> {
+    /// Prepares the linearisation by these inputs, of a state of independent coordinates.
+    pub fn new(model: &'m Model, independent: &Independent, inputs: &[StepInput]) -> Self {
         let map = &model.action.map;
-        if model.coordinates == Coordinates::Redundant || map.multipliers > 0 {
-            return Err(NoState::Redundant);
-        }
-        if map.instant().z.len() > map.unknowns() {
-            return Err(NoState::Charts);
-        }
-        let held = model.prescribed_coordinates();
-        let free: Vec<usize> = (0..map.coordinates).filter(|i| !held.contains(i)).collect();
+        let free = independent.coordinates().to_vec();
         let is_inert = |i: &usize| !model.is_memory(*i);
-        Ok(Self {
+        Self {
             model,
             inputs: inputs.to_vec(),
             inert: free.iter().copied().filter(is_inert).collect(),
             free,
+            independent: independent.clone(),
             ends: [map.instant(), map.instant()],
             scratch: model.action.scratch(Order::Hessian),
             values: vec![0.0; model.action.layout().values(1)],
-        })
+        }
     }
 
     /// The coordinates of the state.
@@ -130,6 +112,8 @@ impl<'m> Linearisation<'m> {
 
     /// The state of these coordinates and momenta.
     pub fn state(&self, z: &[f64], momentum: &[f64]) -> Vec<f64> {
+        let mut momentum = momentum.to_vec();
+        self.independent.reduce(self.model, z, &mut momentum);
         let coordinates = self.free.iter().map(|&i| z[i]);
         coordinates
             .chain(self.inert.iter().map(|&i| momentum[i]))
@@ -246,6 +230,9 @@ impl<'m> Linearisation<'m> {
         action.pull_back_interval(Order::Hessian, [here, next], &interval, 0, scratch, values);
         // The curvature of the coordinates under the forces of this interval alone.
         for (k, end) in [here, next].into_iter().enumerate() {
+            let mut forces = vec![0.0; n];
+            action.map.pull_back(&end.columns, &end.forces, &mut forces);
+            self.independent.balance(self.model, end, &forces);
             action.evaluate_instant(Order::Hessian, end, &[], scratch);
             action.pull_back_instant(Order::Hessian, end, k, scratch, values);
         }
@@ -261,7 +248,9 @@ impl<'m> Linearisation<'m> {
         action
             .map
             .pull_back(&next.columns, &next.forces, &mut out.momentum);
-        for (slot, (row, col)) in layout.same.entries().enumerate() {
+        let of_coordinates = |(_, (row, col)): &(usize, (usize, usize))| *row < n && *col < n;
+        let same = layout.same.entries().enumerate();
+        for (slot, (row, col)) in same.filter(of_coordinates) {
             out.by[0][0][(row, col)] = values[layout.same_at(0) + slot];
             out.by[1][1][(row, col)] = values[layout.same_at(1) + slot];
         }
@@ -279,12 +268,26 @@ impl<'m> Linearisation<'m> {
             out.scalars[(s, t)] = value;
             out.scalars[(t, s)] = value;
         }
+        let slopes = z.map(|z| self.independent.slopes(self.model, z));
+        for (i, of_row) in slopes.iter().enumerate() {
+            of_row.rows(&mut out.mixed[i]);
+            for (j, of_column) in slopes.iter().enumerate() {
+                of_row.rows(&mut out.by[i][j]);
+                of_column.columns(&mut out.by[i][j]);
+            }
+        }
         out
     }
 }
 
-/// Derivatives of the momentum of each coordinate at coordinates z with these rates: the mass matrix by rates, and by coordinates.
-pub fn momentum_derivatives(model: &Model, z: &[f64], rates: &[f64]) -> [DMatrix<f64>; 2] {
+/// Derivatives of the momentum of each coordinate at coordinates z with these rates: the mass matrix by rates, and by coordinates; in closed loops
+/// those of independent coordinates.
+pub fn momentum_derivatives(
+    model: &Model,
+    independent: &Independent,
+    z: &[f64],
+    rates: &[f64],
+) -> [DMatrix<f64>; 2] {
     let action = &model.action;
     let map = &action.map;
     let n = map.coordinates;
@@ -297,9 +300,15 @@ pub fn momentum_derivatives(model: &Model, z: &[f64], rates: &[f64]) -> [DMatrix
         mass.set_column(c, &DVector::from_vec(column));
         unit[c] = 0.0;
     }
+    let slopes = independent.slopes(model, z);
+    let whole = |mut of: DMatrix<f64>| {
+        slopes.rows(&mut of);
+        slopes.columns(&mut of);
+        of
+    };
     let mut by_coordinates = DMatrix::zeros(n, n);
     if rates.iter().all(|rate| *rate == 0.0) {
-        return [mass, by_coordinates];
+        return [whole(mass), by_coordinates];
     }
     instant.l[..n].copy_from_slice(rates);
     map.along(&mut instant);
@@ -324,5 +333,9 @@ pub fn momentum_derivatives(model: &Model, z: &[f64], rates: &[f64]) -> [DMatrix
         by_coordinates.set_column(c, &DVector::from_vec(rows));
         unit[c] = 0.0;
     }
-    [mass, by_coordinates]
+    let mut momentum = vec![0.0; n];
+    map.pull_back(&instant.columns, &moving, &mut momentum);
+    let moving = [rates, &momentum[..]];
+    independent.add_curvature(model, &mut instant, moving, &mass, &mut by_coordinates);
+    [mass, by_coordinates].map(whole)
 }

@@ -34,6 +34,7 @@ pub use layout::variables::{Role, Size, Time, Variable, Variables};
 pub use model::{Floating, Model};
 pub use presolve::graph::Graph;
 pub use presolve::immobile::Immobile;
+pub(crate) use presolve::loops::independent_rows;
 pub use presolve::loops::{Loops, OPEN};
 pub use presolve::presolved::{BodyLocation, Presolved};
 pub use quantities::quantity::{MILLIAMPERE, Quantity};

@@ -162,11 +162,8 @@ impl<'a> Loop<'a> {
             let place = format!("simulate.controller.{kind}");
             WorkflowError::problem(place, format!("{}: {reason}", controller.path.display()))
         };
-        if model.coordinates == Coordinates::Redundant || model.has_loops() {
-            let reason = match model.has_loops() {
-                true => "it measures independent joint coordinates; expected no closed loop",
-                false => "it measures joint coordinates; expected \"coordinates\": \"reduced\"",
-            };
+        if model.coordinates == Coordinates::Redundant {
+            let reason = "it measures joint coordinates; expected \"coordinates\": \"reduced\"";
             return Err(wrong(reason));
         }
         let law = horizon.map_or(&*controller.law, Horizon::law);

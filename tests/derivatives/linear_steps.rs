@@ -5,17 +5,37 @@ use crate::common::systems::{blocks, branched, charged};
 use crate::common::{at_reference, trunk};
 use nalgebra::{DMatrix, DVector};
 use proboscis::dynamics::{
-    LinearStep, Linearisation, NoState, StepInput, Stepper, momentum_derivatives, step_inputs,
+    Independent, LinearStep, Linearisation, NoState, StepInput, Stepper, momentum_derivatives,
+    step_inputs,
 };
+use proboscis::files::read_problem;
 use proboscis::math::Random;
 use proboscis::model::{Analysis, Coordinates, Model, Role, System};
+use std::path::Path;
 
 const STEP: f64 = 2.5;
 /// A charge of a muscle, in mJ/V.
 const CHARGE: f64 = 3e-3;
 
 fn model(system: System) -> Model {
-    Model::for_analysis(system, Analysis::of_motion(STEP)).unwrap()
+    let mut analysis = Analysis::of_motion(STEP);
+    analysis.coordinates = Some(Coordinates::Reduced);
+    Model::for_analysis(system, analysis).unwrap()
+}
+
+/// Independent coordinates near the reference.
+fn independent(model: &Model) -> Independent {
+    Independent::new(model, &[]).unwrap()
+}
+
+/// A four-bar whose joints have springs, also that which closes the loop.
+fn four_bar() -> System {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let springs: Vec<String> = (0..4)
+        .map(|joint| format!("scene.joints[{joint}].stiffness=0.05"))
+        .collect();
+    let loaded = read_problem(&root.join("problems/four_bar.json"), &springs).unwrap();
+    loaded.system
 }
 
 /// A state of motion: coordinates, momenta, and scalars that are given.
@@ -38,10 +58,13 @@ impl State {
                 false => draw(if model.is_memory(i) { 1e-3 } else { 0.03 }),
             };
         }
+        let independent = independent(model);
+        independent.close(model, &mut z, &mut vec![0.0; n]);
         let rates: Vec<f64> = (0..n).map(|_| draw(1e-3)).collect();
         let mut instant = model.action.map.placed(&z);
         let mut momentum = model.action.momentum(&mut instant, &rates);
         model.memory().for_each(|i| momentum[i] = 0.0);
+        independent.reduce(model, &z, &mut momentum);
         let voltages = model.variables.range(Role::Voltage);
         let inputs = model.variables.sources_range();
         let size = |s: usize| {
@@ -74,9 +97,11 @@ impl State {
 /// The linearised step from a state, and the same by differences.
 fn both(model: &Model, state: &State) -> [LinearStep; 2] {
     let inputs = step_inputs(model);
-    let mut linearisation = Linearisation::new(model, &inputs).unwrap();
-    let [z, momentum, scalars] = state.after(model);
+    let independent = independent(model);
+    let mut linearisation = Linearisation::new(model, &independent, &inputs);
+    let [z, mut momentum, scalars] = state.after(model);
     let exact = linearisation.step([&state.z, &z], &scalars, STEP).unwrap();
+    independent.reduce(model, &z, &mut momentum);
     let greatest = momentum.iter().fold(0.0_f64, |a, p| a.max(p.abs()));
     for (own, simulated) in exact.momentum.iter().zip(&momentum) {
         assert!((own - simulated).abs() < 1e-9 * greatest);
@@ -96,6 +121,11 @@ fn both(model: &Model, state: &State) -> [LinearStep; 2] {
             inputs: state.inputs.clone(),
         };
         change(&mut state);
+        independent.close(
+            model,
+            &mut state.z,
+            &mut vec![0.0; model.coordinate_count()],
+        );
         next(state)
     };
     let column = |size: f64, change: &dyn Fn(&mut State, f64)| {
@@ -163,10 +193,7 @@ fn check(name: &str, system: System, voltage: f64, squares: usize) {
     let is_squared = |input: &&StepInput| input.is_squared;
     assert_eq!(inputs.iter().filter(is_squared).count(), squares, "{name}");
     let [exact, differences] = both(&model, &State::new(&model, voltage));
-    let n = Linearisation::new(&model, &inputs)
-        .unwrap()
-        .coordinates()
-        .len();
+    let n = independent(&model).coordinates().len();
     let of_state = deviation(&exact.by_state, &differences.by_state, [n, n]);
     assert!(of_state < 1e-6, "{name}: {of_state:e} of A");
     for c in 0..inputs.len() {
@@ -195,6 +222,15 @@ fn linear_steps_of_finite_elements() {
     check("blocks", blocks(), 300.0, 3);
 }
 
+#[test]
+fn linear_steps_of_closed_loops() {
+    check("four-bar", four_bar(), 1000.0, 1);
+    let model = model(four_bar());
+    // Three hinges of the tree, and the one that closes the loop with its spring: one degree of freedom.
+    assert_eq!(model.coordinate_count(), 4);
+    assert_eq!(independent(&model).coordinates().len(), 1);
+}
+
 /// A squared voltage of zero has an effect, by its square, as any other.
 #[test]
 fn zero_voltages_have_authority() {
@@ -203,7 +239,8 @@ fn zero_voltages_have_authority() {
     let mut state = State::new(&model, 0.0);
     state.inputs.fill(0.0);
     let [z, _, scalars] = state.after(&model);
-    let mut linearisation = Linearisation::new(&model, &inputs).unwrap();
+    let independent = independent(&model);
+    let mut linearisation = Linearisation::new(&model, &independent, &inputs);
     let step = linearisation.step([&state.z, &z], &scalars, STEP).unwrap();
     let next = |square: f64| {
         let mut inputs = state.inputs.clone();
@@ -228,24 +265,40 @@ fn zero_voltages_have_authority() {
 
 #[test]
 fn momenta_by_coordinates_and_rates() {
-    let model = model(remembering());
-    let State { z, .. } = State::new(&model, 0.0);
+    of_momenta(&model(remembering()));
+    of_momenta(&model(four_bar()));
+}
+
+fn of_momenta(model: &Model) {
+    let State { z, .. } = State::new(model, 0.0);
     let n = model.coordinate_count();
-    let rates: Vec<f64> = (0..n).map(|i| 1e-3 * (1.0 + i as f64)).collect();
-    let [by_rates, by_coordinates] = momentum_derivatives(&model, &z, &rates);
+    let independent = independent(model);
+    let free = independent.coordinates();
+    let own = |i: usize| f64::from(u8::from(free.contains(&i)));
+    let given: Vec<f64> = (0..n).map(|i| 1e-3 * (1.0 + i as f64) * own(i)).collect();
+    // Those of all coordinates by the independent ones.
+    let all = |z: &[f64]| {
+        let mut rates = given.clone();
+        independent.close(model, &mut z.to_vec(), &mut rates);
+        rates
+    };
+    let [by_rates, by_coordinates] = momentum_derivatives(model, &independent, &z, &all(&z));
     let momentum = |z: &[f64]| {
         let mut instant = model.action.map.placed(z);
-        model.action.momentum(&mut instant, &rates)
+        let mut momentum = model.action.momentum(&mut instant, &all(z));
+        independent.reduce(model, z, &mut momentum);
+        momentum
     };
-    let product = &by_rates * DVector::from_column_slice(&rates);
+    let product = &by_rates * DVector::from_column_slice(&given);
     for (a, b) in product.iter().zip(momentum(&z)) {
         assert!((a - b).abs() < 1e-12 * product.amax());
     }
     assert!(by_coordinates.amax() > 0.0);
-    for c in 0..n {
+    for &c in free {
         let ends = [1e-5, -1e-5].map(|by| {
             let mut z = z.clone();
             z[c] += by;
+            independent.close(model, &mut z, &mut vec![0.0; n]);
             momentum(&z)
         });
         for r in 0..n {
@@ -264,9 +317,9 @@ fn no_state_of_redundant_coordinates() {
     let mut analysis = Analysis::of_motion(STEP);
     analysis.coordinates = Some(Coordinates::Redundant);
     let redundant = Model::for_analysis(trunk(1), analysis).unwrap();
-    let error = Linearisation::new(&redundant, &[]).unwrap_err();
+    let error = Independent::new(&redundant, &[]).unwrap_err();
     assert_eq!(error, NoState::Redundant);
     let turning = model(crate::common::systems::satellite());
-    let error = Linearisation::new(&turning, &[]).unwrap_err();
+    let error = Independent::new(&turning, &[]).unwrap_err();
     assert_eq!(error, NoState::Charts);
 }

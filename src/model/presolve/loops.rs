@@ -185,13 +185,17 @@ impl Loops {
     }
 }
 
-/// Numbers of the rows that follow from the others in all samples of this greatest rank, in order.
-///
-/// They are picked one by one in bases of the left null spaces: the row whose part that is independent of those before is
-/// greatest where it is least.
+/// Numbers of the rows that follow from the others in all samples of this greatest rank, in order: those that are most independent in
+/// bases of the left null spaces.
 fn dependent(samples: &[DMatrix<f64>], greatest: usize) -> Vec<usize> {
     let samples = samples.iter().filter(|s| rank(s, NONE) == greatest);
-    let mut bases: Vec<_> = samples.map(|s| left_null_space(s, greatest)).collect();
+    independent_rows(samples.map(|s| left_null_space(s, greatest)).collect())
+}
+
+/// Numbers of as many rows as bases with orthonormal columns have columns, in order.
+///
+/// They are picked one by one: the row whose part that is independent of those before is greatest where it is least.
+pub(crate) fn independent_rows(mut bases: Vec<DMatrix<f64>>) -> Vec<usize> {
     let (rows, count) = bases.first().map_or((0, 0), |basis| basis.shape());
     let mut picked = Vec::with_capacity(count);
     for _ in 0..count {

@@ -232,6 +232,9 @@ fn offered(model: &Model, control: &Control) -> Result<(), NoHorizon> {
     if !model.prescribed.is_empty() {
         return not("a prescribed joint");
     }
+    if model.has_loops() {
+        return not("a closed loop");
+    }
     if !control.given.is_empty() || control.course.is_some() {
         return not("a given input");
     }

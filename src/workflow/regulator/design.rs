@@ -7,7 +7,7 @@
 
 use crate::control::problem::{Control, Regulator};
 use crate::dynamics::{
-    DiscreteTrajectory, LinearStep, Linearisation, StepError, StepInput, Stepper,
+    DiscreteTrajectory, Independent, LinearStep, Linearisation, StepError, StepInput, Stepper,
     momentum_derivatives, rates_of_momentum, step_inputs,
 };
 use crate::feedback::Costs;
@@ -50,7 +50,7 @@ impl<'a> Along<'a> {
     }
 }
 
-/// Coordinates and momenta at an instant.
+/// Coordinates and momenta at an instant, those of coordinates that follow from independent ones being zero.
 #[derive(Clone)]
 pub(super) struct State {
     pub(super) z: Vec<f64>,
@@ -62,13 +62,16 @@ pub(super) struct Design<'a> {
     pub(super) model: &'a Model,
     pub(super) task: &'a Regulator,
     pub(super) discrete: &'a DiscreteTrajectory,
-    momentum: &'a [f64],
+    /// The momentum at the start.
+    momentum: Vec<f64>,
     /// Voltages that hold the goal, by source.
     pub(super) rest: Option<&'a [f64]>,
     pub(super) inputs: Vec<StepInput>,
     pub(super) bounds: Vec<[f64; 2]>,
     /// Range of each input, or of its square.
     pub(super) ranges: Vec<f64>,
+    /// Independent coordinates along the motion.
+    pub(super) independent: Independent,
     pub(super) coordinates: Vec<usize>,
     pub(super) momenta: Vec<usize>,
     /// Places of the coordinates that are integrated.
@@ -116,7 +119,10 @@ impl<'a> Design<'a> {
         if inputs.is_empty() {
             return Err(NoRegulator::NoInput);
         }
-        let mut linearisation = Linearisation::new(model, &inputs).map_err(NoRegulator::State)?;
+        let independent = Independent::new(model, &discrete.z).map_err(NoRegulator::State)?;
+        let mut start = momentum.to_vec();
+        independent.reduce(model, &discrete.z[0], &mut start);
+        let mut linearisation = Linearisation::new(model, &independent, &inputs);
         if linearisation.size() > MOST {
             return Err(NoRegulator::Large(linearisation.size()));
         }
@@ -135,8 +141,9 @@ impl<'a> Design<'a> {
             model,
             task,
             discrete,
-            momentum,
+            momentum: start,
             rest,
+            independent,
             bounds,
             ranges,
             momenta: linearisation.momenta().to_vec(),
@@ -163,7 +170,7 @@ impl<'a> Design<'a> {
     pub(super) fn motion(&self) -> Result<Vec<State>, NoRegulator> {
         let mut states = vec![State {
             z: self.discrete.z[0].clone(),
-            momentum: self.momentum.to_vec(),
+            momentum: self.momentum.clone(),
         }];
         for scalars in &self.discrete.scalars {
             let inputs = self.model.variables.split(scalars)[0];
@@ -187,10 +194,10 @@ impl<'a> Design<'a> {
         for _ in 0..parts {
             stepper.step(self.h / parts as f64, inputs)?;
         }
-        Ok(State {
-            z: stepper.coordinates().to_vec(),
-            momentum: stepper.momentum().to_vec(),
-        })
+        let z = stepper.coordinates().to_vec();
+        let mut momentum = stepper.momentum().to_vec();
+        self.independent.reduce(self.model, &z, &mut momentum);
+        Ok(State { z, momentum })
     }
 
     /// The linearised interval from a state under inputs: the product of its short steps, and E, the state after it by constant disturbances on joints. In
@@ -293,14 +300,20 @@ impl<'a> Design<'a> {
         }
     }
 
-    /// The part of Q that is of coordinates and markers.
+    /// The part of Q that is of coordinates and markers; those that follow from the coordinates of the state cost as these do.
     fn place_costs(&self, at: &State) -> DMatrix<f64> {
-        let size = self.coordinates.len() + self.momenta.len() + self.integrated.len();
+        let n = self.coordinates.len();
+        let size = n + self.momenta.len() + self.integrated.len();
         let mut costs = DMatrix::zeros(size, size);
+        let weight = |i: usize| self.task.coordinates / self.unit(i).powi(2);
         for (place, &i) in self.coordinates.iter().enumerate() {
             if !self.model.is_memory(i) {
-                costs[(place, place)] += self.task.coordinates / self.unit(i).powi(2);
+                costs[(place, place)] += weight(i);
             }
+        }
+        for (i, slopes) in self.independent.slopes(self.model, &at.z).followers() {
+            let mut own = costs.view_mut((0, 0), (n, n));
+            own.ger(weight(i), &slopes, &slopes, 1.0);
         }
         for &(marker, weight) in &self.task.markers {
             let mut place = DMatrix::zeros(3, size);
@@ -315,18 +328,15 @@ impl<'a> Design<'a> {
     pub(super) fn by_coordinates(&self, marker: usize, at: &State) -> DMatrix<f64> {
         let map = &self.model.action.map;
         let instant = map.placed(&at.z);
-        let mut out = DMatrix::zeros(3, self.coordinates.len());
-        for axis in 0..3 {
-            let mut row = vec![0.0; self.model.coordinate_count()];
+        let mut rows = DMatrix::zeros(self.model.coordinate_count(), 3);
+        for (axis, mut row) in rows.column_iter_mut().enumerate() {
             let mut unit = Vector::zeros();
             unit[axis] = 1.0;
             let vector = self.model.markers[marker];
-            map.pull_back_one(vector, &instant.columns, &unit, &mut row);
-            for (c, &i) in self.coordinates.iter().enumerate() {
-                out[(axis, c)] = row[i];
-            }
+            map.pull_back_one(vector, &instant.columns, &unit, row.as_mut_slice());
         }
-        out
+        self.independent.slopes(self.model, &at.z).rows(&mut rows);
+        rows.select_rows(&self.coordinates).transpose()
     }
 
     /// Derivatives of coordinates and momenta by coordinates and rates.
@@ -342,7 +352,7 @@ impl<'a> Design<'a> {
     /// Derivatives of the momenta of the state by rates and by coordinates.
     pub(super) fn of_momenta(&self, State { z, momentum }: &State) -> [DMatrix<f64>; 2] {
         let rates = rates_of_momentum(self.model, z, 0.0, momentum);
-        let [mass, by] = momentum_derivatives(self.model, z, &rates);
+        let [mass, by] = momentum_derivatives(self.model, &self.independent, z, &rates);
         [
             mass.select_rows(&self.momenta)
                 .select_columns(&self.momenta),
@@ -385,6 +395,8 @@ impl Design<'_> {
             let (places, momenta) = change.as_slice().split_at(self.coordinates.len());
             let own = self.coordinates.iter().zip(places);
             own.for_each(|(&i, change)| state.z[i] += change);
+            let rates = &mut vec![0.0; self.model.coordinate_count()];
+            self.independent.close(self.model, &mut state.z, rates);
             let own = self.momenta.iter().zip(momenta);
             own.for_each(|(&i, change)| state.momentum[i] += change);
             if !change.iter().all(|value| value.is_finite()) {

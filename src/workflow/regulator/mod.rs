@@ -50,8 +50,7 @@ pub(crate) fn predicting(along: Along<'_>, task: &Regulator) -> Result<Regulated
 
 impl Design<'_> {
     fn regulated(&self) -> Result<Regulated, NoRegulator> {
-        let mut linearisation =
-            Linearisation::new(self.model, &self.inputs).map_err(NoRegulator::State)?;
+        let mut linearisation = Linearisation::new(self.model, &self.independent, &self.inputs);
         let motion = self.motion()?;
         let mut steps = Vec::new();
         for (k, part) in motion.windows(2).enumerate() {

@@ -361,6 +361,8 @@ fn difference(
         off[place] = OFF * sizes[i];
         z[i] += off[place];
     }
+    let rates = &mut vec![0.0; model.coordinate_count()];
+    design.independent.close(model, &mut z, rates);
     let change = -(&step.gain * &off);
     let mut given = model.variables.split(&design.discrete.scalars[k])[0].to_vec();
     let mut acted = DVector::zeros(design.inputs.len());
