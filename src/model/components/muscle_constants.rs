@@ -96,7 +96,7 @@ impl<'a> MuscleConstants<'a> {
         self.read.is_empty()
     }
 
-    /// What was read of them.
+    /// The parameters and moves that were read.
     pub(in crate::model) fn read(self) -> Read {
         self.read
     }
