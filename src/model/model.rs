@@ -58,6 +58,7 @@ pub struct Model {
     /// Time that scales multipliers: the action holds −h₀ λ·g, in ms.
     pub multiplier_time: f64,
     pub(super) graph: Graph,
+    /// Poses of the presolved bodies in the reference configuration.
     pub reference: Vec<Pose>,
     /// Closing constraints that are left out.
     pub loops: Loops,
