@@ -37,11 +37,11 @@ def test_examples_run(name: str, capsys: pytest.CaptureFixture[str]) -> None:
 def test_notebooks_run(path: Path) -> None:
     kept = nbformat.read(path, as_version=4)
     run = nbformat.from_dict({**kept, "cells": [{**cell, **({"outputs": []} if "outputs" in cell else {})} for cell in kept.cells]})
-    NotebookClient(run, timeout=600, resources={"metadata": {"path": str(path.parent)}}).execute()
+    NotebookClient(run, timeout=600, startup_timeout=600, resources={"metadata": {"path": str(path.parent)}}).execute()
 
     def outputs(notebook: nbformat.NotebookNode) -> list[list[str]]:
         cells = [cell for cell in notebook.cells if cell.cell_type == "code"]
-        return [sorted({output.output_type for output in cell.outputs}) for cell in cells]
+        return [sorted({output.output_type for output in cell.outputs if output.get("name") != "stderr"}) for cell in cells]
 
-    # The saved ones are those of this code; a kernel may split what is printed into several messages.
+    # The saved ones are those of this code; a kernel may split what is printed into several messages, and warns of what a busy machine does.
     assert outputs(run) == outputs(kept) and sum(map(len, outputs(run))) > 2
