@@ -36,9 +36,10 @@ class Picture {
     requestAnimationFrame((now) => {
       this.asked = false;
       const moves = now - this.changed < REST;
-      this.changed = now;
       if (moves) this.draw(this.coarse);
       else this.measure();
+      // The time that drawing takes is no rest.
+      this.changed = performance.now();
     });
   }
 
