@@ -138,7 +138,7 @@ fn simulation(voltages: &[f64], coordinates: Coordinates) -> Simulation {
             rates: BTreeMap::new(),
             velocities: Default::default(),
         },
-        voltages: Voltages::Constant(voltages.to_vec()),
+        voltages: Voltages::constant(voltages),
         coordinates: Some(coordinates),
         solving: Solving::default(),
         controller: None,

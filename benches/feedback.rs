@@ -100,7 +100,7 @@ fn closed_loop(system: &System, start: BoundaryState, law: &Arc<Law>) -> ClosedL
         step: law.h / 5.0,
         tolerance: None,
         start,
-        voltages: Voltages::Constant(vec![0.0; system.sources().len()]),
+        voltages: Voltages::constant(&vec![0.0; system.sources().len()]),
         coordinates: None,
         solving: Solving::default(),
         controller: Some(Box::new(FeedbackControl {

@@ -11,7 +11,7 @@ use crate::app::progress::{Progress, Reached};
 use crate::app::request::{CommandInput, CommandOutput, counted};
 use crate::app::summary::{STOPPED, Seconds, Summary, leave_out, plan, time_to_write};
 use crate::app::{comparison, fields};
-use crate::control::problem::{Afterwards, Simulation, Voltages};
+use crate::control::problem::{Afterwards, Simulation};
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{DiscreteTrajectory, LocalError, observed};
 use crate::files::{Entries, Loaded};
@@ -366,6 +366,7 @@ impl<'a> Ended<'a> {
         let open = open.map(|open| shown.beside(open));
         let tracked = shown.tracked(closed.map_or(&[], |closed| &closed.tracked));
         let earlier = earlier.as_ref().map(|e| ("the solution", e));
+        let held = held(task, result.reached());
         let pictures = report::Run {
             name: match closed {
                 Some(_) => "with feedback",
@@ -374,7 +375,7 @@ impl<'a> Ended<'a> {
             comparison: open.as_ref().map(|o| ("without feedback", o)).or(earlier),
             tracked: &tracked,
             disturbed: &self.loops,
-            held: held(task, result.reached()),
+            held: held.as_deref(),
             figures: request.figures,
             page: request.page.of(&content),
             ..shown.run(system, origin)
@@ -462,14 +463,8 @@ fn method(task: &Simulation) -> String {
 }
 
 /// Voltages in V that the solution or table says to hold from the end of the motion on, which it reached.
-pub(super) fn held(task: &Simulation, reached: f64) -> Option<&[f64]> {
-    match &task.voltages {
-        Voltages::Sampled {
-            ends,
-            rows,
-            afterwards: Afterwards::Held,
-            ..
-        } if reached >= ends[ends.len() - 1] * (1.0 - 1e-9) => rows.last().map(Vec::as_slice),
-        _ => None,
-    }
+pub(super) fn held(task: &Simulation, reached: f64) -> Option<Vec<f64>> {
+    let table = task.voltages.table.as_ref()?;
+    let is_held = table.afterwards == Afterwards::Held && reached >= table.time * (1.0 - 1e-9);
+    is_held.then(|| task.voltages.at(table.time))
 }

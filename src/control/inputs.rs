@@ -2,30 +2,27 @@
 
 use crate::math::{Signal, in_order};
 use crate::model::System;
-use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// Voltages and loads over time (V, N, N mm; one per source).
+/// Voltages and loads over time (V, N, N mm): a function of time for each source.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Voltages {
+    /// The functions, by source.
+    pub signals: Vec<Signal>,
+    /// The end of the table that those in steps are read from.
+    pub table: Option<TableEnd>,
+}
+
+/// The end of a table of voltages, or of a solution.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Voltages {
-    /// The same in every interval.
-    Constant(Vec<f64>),
-    /// One row per interval of the given grid, and one for the time afterwards.
-    Sampled {
-        /// End of each interval in ms, increasing.
-        ends: Vec<f64>,
-        /// Rows of voltages, one more than ends.
-        rows: Vec<Vec<f64>>,
-        /// Role of the last row.
-        afterwards: Afterwards,
-        /// Sources that follow functions of time instead: loads.
-        others: BTreeMap<usize, Signal>,
-        /// The solution they were read from; none of a table in the problem.
-        solution: Option<PathBuf>,
-    },
-    /// A function of time for each source.
-    Signals(Vec<Signal>),
+pub struct TableEnd {
+    /// Its time in ms.
+    pub time: f64,
+    /// Role of the voltages from then on.
+    pub afterwards: Afterwards,
+    /// The solution; none of a table in the problem.
+    pub solution: Option<PathBuf>,
 }
 
 /// Voltages after the end of a solution or table.
@@ -38,153 +35,86 @@ pub enum Afterwards {
 }
 
 impl Voltages {
+    /// The same all the time.
+    pub fn constant(row: &[f64]) -> Self {
+        Self::from(
+            row.iter()
+                .copied()
+                .map(Signal::Constant)
+                .collect::<Vec<_>>(),
+        )
+    }
+
     /// The solution that they are from.
     pub fn solution(&self) -> Option<&Path> {
-        match self {
-            Self::Constant(_) | Self::Signals(_) => None,
-            Self::Sampled { solution, .. } => solution.as_deref(),
-        }
+        self.table.as_ref()?.solution.as_deref()
     }
 
     /// Voltages of the sources at a time in ms.
-    pub fn at(&self, time: f64) -> Cow<'_, [f64]> {
-        match self {
-            Self::Constant(row) => Cow::Borrowed(row),
-            Self::Signals(signals) => signals.iter().map(|signal| signal.at(time)).collect(),
-            Self::Sampled {
-                ends, rows, others, ..
-            } => {
-                let k = ends.iter().position(|&end| time < end);
-                let row = &rows[k.unwrap_or(ends.len())];
-                if others.is_empty() {
-                    return Cow::Borrowed(row);
-                }
-                let mut row = row.clone();
-                for (&source, signal) in others {
-                    row[source] = signal.at(time);
-                }
-                Cow::Owned(row)
-            }
-        }
+    pub fn at(&self, time: f64) -> Vec<f64> {
+        self.signals.iter().map(|signal| signal.at(time)).collect()
+    }
+
+    /// Returns true if none changes.
+    pub fn are_constant(&self) -> bool {
+        self.signals.iter().all(Signal::is_constant)
     }
 
     /// Returns true if they are constant between the ends of rows.
     pub fn are_constant_by_rows(&self) -> bool {
-        match self {
-            Self::Constant(_) => true,
-            Self::Sampled { others, .. } => others.values().all(Signal::is_constant),
-            Self::Signals(signals) => signals.iter().all(Signal::is_constant),
-        }
+        let mut signals = self.signals.iter();
+        signals.all(|signal| signal.is_constant() || matches!(signal, Signal::Steps { .. }))
     }
 
     /// Rates per ms of the voltages of the sources at a time in ms.
     pub fn rates(&self, time: f64) -> Vec<f64> {
         let rate = |signal: &Signal| signal.derivatives(time)[1];
-        match self {
-            Self::Constant(row) => vec![0.0; row.len()],
-            Self::Signals(signals) => signals.iter().map(rate).collect(),
-            Self::Sampled { rows, others, .. } => {
-                let of = |source| others.get(&source).map_or(0.0, rate);
-                (0..rows[0].len()).map(of).collect()
-            }
-        }
+        self.signals.iter().map(rate).collect()
     }
 
-    /// A function of time for each source; constants where all of them are.
-    pub fn of_signals(signals: Vec<Signal>) -> Self {
-        let constants: Option<Vec<f64>> = signals.iter().map(Signal::constant).collect();
-        constants.map_or(Self::Signals(signals), Self::Constant)
-    }
-
-    /// The same with some sources that follow functions of time.
+    /// The same with some sources that follow other functions of time.
     #[must_use]
     pub fn with(mut self, others: BTreeMap<usize, Signal>) -> Self {
-        if others.is_empty() {
-            return self;
-        }
-        let mut signals: Vec<Signal> = match &mut self {
-            Self::Sampled { others: known, .. } => {
-                known.extend(others);
-                return self;
-            }
-            Self::Constant(row) => row.iter().copied().map(Signal::Constant).collect(),
-            Self::Signals(signals) => std::mem::take(signals),
-        };
         for (source, signal) in others {
-            signals[source] = signal;
+            self.signals[source] = signal;
         }
-        Self::of_signals(signals)
+        self
     }
 
     /// The same with a factor of each source.
     #[must_use]
     pub fn scaled(&self, factor: impl Fn(usize) -> f64) -> Self {
         let mut out = self.clone();
-        let scale = |row: &mut Vec<f64>| {
-            let values = row.iter_mut().enumerate();
-            values.for_each(|(source, value)| *value *= factor(source));
-        };
-        match &mut out {
-            Self::Constant(row) => scale(row),
-            Self::Sampled { rows, others, .. } => {
-                rows.iter_mut().for_each(scale);
-                for (&source, signal) in others {
-                    *signal = signal.scaled(factor(source));
-                }
-            }
-            Self::Signals(signals) => {
-                for (source, signal) in signals.iter_mut().enumerate() {
-                    *signal = signal.scaled(factor(source));
-                }
-            }
+        for (source, signal) in out.signals.iter_mut().enumerate() {
+            *signal = signal.scaled(factor(source));
         }
         out
     }
 
     /// Returns true if the voltage of a source is ever other than zero.
     pub fn drive(&self, source: usize) -> bool {
-        match self {
-            Self::Constant(row) => row[source] != 0.0,
-            Self::Sampled { rows, others, .. } => match others.get(&source) {
-                Some(signal) => !signal.is_zero(),
-                None => rows.iter().any(|row| row[source] != 0.0),
-            },
-            Self::Signals(signals) => !signals[source].is_zero(),
-        }
+        !self.signals[source].is_zero()
     }
 
     /// The earliest time in ms after which a table among them says nothing more.
     pub fn last_known(&self) -> Option<f64> {
-        let first = |ends: &mut dyn Iterator<Item = f64>| ends.reduce(f64::min);
-        match self {
-            Self::Constant(_) => None,
-            Self::Sampled {
-                ends,
-                afterwards,
-                others,
-                ..
-            } => {
-                let own = ends.last().copied();
-                let own = own.filter(|_| *afterwards == Afterwards::OfLastInterval);
-                let others = others.values().filter_map(Signal::last_known);
-                first(&mut own.into_iter().chain(others))
-            }
-            Self::Signals(signals) => first(&mut signals.iter().filter_map(Signal::last_known)),
-        }
+        let table = self.table.as_ref();
+        let table = table.filter(|table| table.afterwards == Afterwards::OfLastInterval);
+        let others = self.signals.iter().filter_map(Signal::last_known);
+        others.chain(table.map(|table| table.time)).reduce(f64::min)
     }
 
     /// Times in ms at which they may switch, or have a corner.
-    pub fn switches(&self) -> Cow<'_, [f64]> {
-        match self {
-            Self::Constant(_) => Cow::Borrowed(&[]),
-            Self::Sampled { ends, others, .. } if others.is_empty() => Cow::Borrowed(ends),
-            Self::Sampled { ends, others, .. } => {
-                let others = others.values().flat_map(Signal::corners);
-                Cow::Owned(in_order(ends.iter().copied().chain(others)))
-            }
-            Self::Signals(signals) => {
-                Cow::Owned(in_order(signals.iter().flat_map(Signal::corners)))
-            }
+    pub fn switches(&self) -> Vec<f64> {
+        in_order(self.signals.iter().flat_map(Signal::corners))
+    }
+}
+
+impl From<Vec<Signal>> for Voltages {
+    fn from(signals: Vec<Signal>) -> Self {
+        Self {
+            signals,
+            table: None,
         }
     }
 }

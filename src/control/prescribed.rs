@@ -16,7 +16,7 @@
 use crate::control::error::BoundaryError;
 use crate::control::goal::instant_at;
 use crate::control::numbering::Column;
-use crate::control::problem::{BoundaryState, Control, Duration, Limit, Voltages};
+use crate::control::problem::{BoundaryState, Control, Duration, Limit};
 use crate::dynamics::{Start, rates_in_loops};
 use crate::math::{Signal, shortest, significant};
 use crate::model::{Model, Prescribed, System, Time, What, joint_unit};
@@ -279,9 +279,12 @@ impl Duration {
 impl Control {
     /// The function of time that gives the input of a source, where one that is not constant does.
     pub fn function(&self, source: usize) -> Option<&Signal> {
-        let of_course = || match &self.course {
-            Some(Voltages::Signals(signals)) if self.is_given(source) => signals.get(source),
-            _ => None,
+        let course = self.course.as_ref().filter(|_| self.is_given(source));
+        let of_course = || {
+            course
+                .filter(|one| one.table.is_none())?
+                .signals
+                .get(source)
         };
         let function = self.given.get(&source).or_else(of_course);
         function.filter(|function| !function.is_constant())

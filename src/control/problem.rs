@@ -23,13 +23,12 @@ pub use crate::control::identification::{
     ChangedScene, Channel, Identification, Prior, Reading, Recording, Regime, SoughtStart,
     begin_late,
 };
-pub use crate::control::inputs::{Afterwards, Voltages, absent_loads};
+pub use crate::control::inputs::{Afterwards, TableEnd, Voltages, absent_loads};
 pub use crate::control::limits::Limit;
 pub use crate::control::regulator::{Noise, Observation, Regulator};
 
 /// A task with everything resolved: one voltage per muscle, indices for names.
 #[derive(Clone, Debug, PartialEq)]
-#[expect(clippy::large_enum_variant, reason = "a problem has one task")]
 pub enum Task {
     /// Integrate forward in time.
     Simulate(Simulation),

@@ -112,7 +112,7 @@ fn equations<'m>(
     voltages: &[f64],
     h: f64,
 ) -> Result<(Transcription<'m>, StartingPoint), BoundaryError> {
-    let inputs = Voltages::Constant(voltages.to_vec());
+    let inputs = Voltages::constant(voltages);
     let rest = Control {
         goal: BoundaryState::Periodic,
         parameters: control.parameters.clone(),

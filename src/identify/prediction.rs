@@ -79,7 +79,7 @@ impl Grid {
 /// Returns true if instants lie at all corners.
 fn meeting(recording: &Recording, least: usize) -> (usize, bool) {
     let duration = recording.duration();
-    let corners: Vec<f64> = recording.voltages.switches().to_vec();
+    let corners: Vec<f64> = recording.voltages.switches();
     let mut corners: Vec<f64> = corners.into_iter().filter(|t| *t < duration).collect();
     let near = NEAR * duration / least as f64;
     corners.dedup_by(|next, before| *next - *before < near);
@@ -303,7 +303,7 @@ fn of_rest<'a>(
         derivatives: None,
         unknowns: constants,
     };
-    let voltages = Voltages::Constant(voltages.to_vec());
+    let voltages = Voltages::constant(voltages);
     let by = derivatives(setup, from, &lasting(1), &voltages)?;
     // What a joint transmits is read between two intervals.
     Ok(Course {

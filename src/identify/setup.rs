@@ -335,7 +335,7 @@ impl<'a> Inputs<'a> {
         }
         let before = match &*start {
             BoundaryState::RestAtVoltages(row, _) => row.clone(),
-            _ => undelayed.at(0.0).to_vec(),
+            _ => undelayed.at(0.0),
         };
         let loads = system.first_load();
         let is_square = |source| {
@@ -359,11 +359,11 @@ impl<'a> Inputs<'a> {
     }
 
     /// Inputs in the interval between two times in ms: at its middle, unless they are delayed.
-    pub(super) fn within(&self, from: f64, to: f64) -> Cow<'_, [f64]> {
+    pub(super) fn within(&self, from: f64, to: f64) -> Vec<f64> {
         let mut out = self.undelayed.at(0.5 * (from + to));
         for (source, delay) in self.delays.iter().enumerate() {
             if let Some(delay) = delay {
-                out.to_mut()[source] = self.delayed(source, delay.value, [from, to]).value;
+                out[source] = self.delayed(source, delay.value, [from, to]).value;
             }
         }
         out

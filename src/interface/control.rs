@@ -41,7 +41,7 @@ pub struct Control {
 impl Control {
     /// Over a given duration in ms in this number of intervals, from rest without voltages to the reference configuration.
     pub fn over(duration: f64, intervals: usize) -> Self {
-        let (nowhere, nothing) = (BoundaryState::Free, Voltages::Constant(Vec::new()));
+        let (nowhere, nothing) = (BoundaryState::Free, Voltages::default());
         Self {
             task: problem::Control {
                 voltage_bounds: [0.0, f64::INFINITY],

@@ -1,7 +1,7 @@
 //! Identification: constants fitted to recordings.
 
 use crate::control::problem::{
-    self, ChangedScene, Channel, Prior, Reading, Regime, SoughtStart, Voltages, begin_late,
+    self, ChangedScene, Channel, Prior, Reading, Regime, SoughtStart, begin_late,
 };
 use crate::identify::{Identified, identify};
 use crate::interface::error::{Entry, Result, signals};
@@ -156,7 +156,7 @@ impl Recording {
             regime: self.regime,
             sought_start: self.sought_start,
             is_held_out: self.is_held_out,
-            voltages: Voltages::Signals(signals),
+            voltages: signals.into(),
             channels,
             scene: scene.map(|system| {
                 Box::new(ChangedScene {

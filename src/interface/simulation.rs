@@ -1,6 +1,6 @@
 //! Simulations.
 
-use crate::control::problem::{self, Voltages};
+use crate::control::problem;
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{DiscreteTrajectory, Integrator, Newton, Solving};
 use crate::interface::error::{Entry, Error, Result, signals};
@@ -98,7 +98,7 @@ impl Simulation {
                 .unwrap_or(problem::Simulation::FIRST * self.duration),
             tolerance: controlled.then_some(problem::Simulation::TOLERANCE),
             start: self.start.resolve(system, sources)?,
-            voltages: Voltages::Signals(signals),
+            voltages: signals.into(),
             coordinates: None,
             solving: Solving {
                 integrator: self.integrator,

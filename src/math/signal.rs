@@ -36,6 +36,13 @@ pub enum Signal {
         /// A value at each.
         values: Vec<f64>,
     },
+    /// Constant in intervals.
+    Steps {
+        /// End of each interval in ms, growing.
+        ends: Vec<f64>,
+        /// Values, one more than ends: the last one is that afterwards.
+        values: Vec<f64>,
+    },
 }
 
 impl Signal {
@@ -67,7 +74,9 @@ impl Signal {
             Self::Sine {
                 mean, amplitude, ..
             } => [mean, amplitude].into_iter().for_each(|x| *x *= factor),
-            Self::Table { values, .. } => values.iter_mut().for_each(|x| *x *= factor),
+            Self::Table { values, .. } | Self::Steps { values, .. } => {
+                values.iter_mut().for_each(|x| *x *= factor);
+            }
         }
         out
     }
@@ -115,6 +124,7 @@ impl Signal {
                     -amplitude * turns * turns * sin,
                 ];
             }
+            Self::Steps { ends, values } => [values[ends.partition_point(|&end| end <= time)], 0.0],
             Self::Table { times, values } => {
                 let next = times.partition_point(|&t| t <= time);
                 match (next.checked_sub(1), times.get(next)) {
@@ -144,7 +154,9 @@ impl Signal {
             Self::Sine {
                 mean, amplitude, ..
             } => *mean == 0.0 && *amplitude == 0.0,
-            Self::Table { values, .. } => values.iter().all(|&value| value == 0.0),
+            Self::Table { values, .. } | Self::Steps { values, .. } => {
+                values.iter().all(|&value| value == 0.0)
+            }
         }
     }
 
@@ -166,11 +178,16 @@ impl Signal {
             } => [mean, amplitude, frequency, phase]
                 .iter()
                 .all(|v| v.is_finite()),
-            Self::Table { times, values } => {
+            Self::Table { times, values }
+            | Self::Steps {
+                ends: times,
+                values,
+            } => {
                 let all = || times.iter().chain(values);
                 let grows = times.windows(2).all(|pair| pair[0] < pair[1]);
+                let afterwards = usize::from(matches!(self, Self::Steps { .. }));
                 !times.is_empty()
-                    && times.len() == values.len()
+                    && times.len() + afterwards == values.len()
                     && grows
                     && all().all(|v| v.is_finite())
             }
@@ -214,7 +231,7 @@ impl Signal {
             Self::Ramp {
                 start, duration, ..
             } => vec![*start, start + duration],
-            Self::Table { times, .. } => times.clone(),
+            Self::Table { times, .. } | Self::Steps { ends: times, .. } => times.clone(),
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::control::problem::{Task, Voltages};
+use crate::control::problem::Task;
 use crate::files::Loaded;
 use crate::model::{Coordinates, Model};
 
@@ -147,7 +147,7 @@ pub fn available<'a>(
 ) -> Vec<StudyMeasure> {
     let places = points.clone().all(|point| !point.system.markers.is_empty());
     let conserved = points.clone().all(|point| match &point.task {
-        Task::Simulate(task) => matches!(task.voltages, Voltages::Constant(_)),
+        Task::Simulate(task) => task.voltages.are_constant(),
         _ => false,
     });
     let open = points.clone().any(|point| match &point.task {

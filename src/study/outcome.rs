@@ -7,7 +7,7 @@ use std::time::Instant;
 use nalgebra::Vector3;
 
 use crate::app::CommandError;
-use crate::control::problem::{AtRest, Control, Simulation, Task, Voltages};
+use crate::control::problem::{AtRest, Control, Simulation, Task};
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::dynamics::{EquilibriumError, observations, simulate, stable_equilibrium};
 use crate::model::Model;
@@ -212,7 +212,7 @@ fn of_motion(simulated: &Simulated, task: &Simulation, names: &[String]) -> Obse
     let Simulated {
         model, discrete, ..
     } = simulated;
-    let conservative = matches!(task.voltages, Voltages::Constant(_));
+    let conservative = task.voltages.are_constant();
     let mut seen = Observed {
         iterations: discrete.report.iterations,
         // Steps by a tolerance have the length that they need.

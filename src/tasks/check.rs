@@ -256,8 +256,8 @@ fn coupling(program: &Transcription<'_>, model: &Model, row: &str, column: &str)
 /// The control problem whose program has the derivatives of a task.
 fn as_control(task: Task, system: &System) -> Control {
     let at_reference = || BoundaryState::at_joints(BTreeMap::new());
-    let without_goal = |start, step, voltages, coordinates: Option<Coordinates>| {
-        let voltages = Voltages::Constant(voltages);
+    let without_goal = |start, step, voltages: Vec<f64>, coordinates: Option<Coordinates>| {
+        let voltages = Voltages::constant(&voltages);
         let duration = step * INTERVALS as f64;
         Control {
             // A joint that goes on does not rest.

@@ -1,6 +1,6 @@
 //! A simulation: its motion, and the assessment of it.
 
-use crate::control::problem::{Afterwards, Disturbed, FeedbackControl, Simulation, Voltages};
+use crate::control::problem::{Afterwards, Disturbed, FeedbackControl, Simulation, TableEnd};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
     DiscreteTrajectory, EnergyExchange, LocalError, local_error, out_of_domain, out_of_range,
@@ -232,16 +232,11 @@ fn closed_loop(
 
 /// Notes the voltages after the end of the solution from which a simulation takes them, where it goes on for longer.
 pub(super) fn afterwards(task: &Simulation) -> Option<String> {
-    let Voltages::Sampled {
-        ends,
+    let TableEnd {
+        time: end,
         afterwards,
         solution,
-        ..
-    } = &task.voltages
-    else {
-        return None;
-    };
-    let end = ends[ends.len() - 1];
+    } = task.voltages.table.as_ref()?;
     let named = solution.as_ref().map(|path| path.display().to_string());
     let of_solution = named.is_some();
     let source = named.unwrap_or_else(|| "the table".to_owned());

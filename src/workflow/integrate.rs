@@ -86,9 +86,9 @@ pub fn integrate_to(
     let budget = Budget::of_seconds(seconds);
     let (first, _) = grid(task);
     // Sampled voltages may change within a step.
-    let order = match task.voltages {
-        Voltages::Constant(_) => OF_MOTION,
-        Voltages::Sampled { .. } | Voltages::Signals(_) => OF_CONTROL,
+    let order = match task.voltages.are_constant() {
+        true => OF_MOTION,
+        false => OF_CONTROL,
     };
     refine(
         wanted,

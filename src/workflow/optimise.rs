@@ -329,7 +329,10 @@ fn fits(control: &Control) -> bool {
     let has_jump = |function: &Signal| control.duration.jump(function).is_some();
     let changes = |function: &Signal| control.duration.final_value(function).is_none();
     let rests = control.goal.voltages().is_some();
-    let is_sampled = matches!(control.course, Some(Voltages::Sampled { .. }));
+    let is_sampled = control
+        .course
+        .as_ref()
+        .is_some_and(|course| course.table.is_some());
     let mut functions = control.given.values();
     !is_sampled && !functions.any(|function| has_jump(function) || (rests && changes(function)))
 }
@@ -416,14 +419,14 @@ fn displaced(control: &Control, first: &Optimum) -> Control {
     let [low, high] = control.voltage_bounds;
     let guess = match (&control.guess, &first.boundary.rest[1]) {
         (Guess::Simulate(_), _) => Guess::Interpolate,
-        (_, Some(hold)) => Guess::Simulate(Voltages::Constant(hold.clone())),
+        (_, Some(hold)) => Guess::Simulate(Voltages::constant(hold)),
         (_, None) => {
             // Without bounds nothing is known of the size of voltages.
             let half = 0.5 * (low + high);
             let half = if half.is_finite() { half } else { 0.0 };
             let sources = first.model.sources.iter();
             let row = sources.map(|source| if source.is_load() { 0.0 } else { half });
-            Guess::Simulate(Voltages::Constant(row.collect()))
+            Guess::Simulate(Voltages::constant(&row.collect::<Vec<_>>()))
         }
     };
     Control {

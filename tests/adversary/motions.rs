@@ -45,7 +45,7 @@ fn task(signals: &[Signal], duration: f64, tolerance: Option<f64>) -> Simulation
             rates: Default::default(),
             velocities: Default::default(),
         },
-        voltages: Voltages::Signals(signals.to_vec()),
+        voltages: Voltages::from(signals.to_vec()),
         coordinates: None,
         solving: Solving::default(),
         controller: None,

@@ -7,7 +7,9 @@ use super::systems::{branched, charged};
 use super::tracked::{energies, signals, tracked};
 use super::trunk;
 use proboscis::System;
-use proboscis::control::problem::{BoundaryState, Control, Duration, Objective, SoughtHold};
+use proboscis::control::problem::{
+    Afterwards, BoundaryState, Control, Duration, Objective, SoughtHold, TableEnd, Voltages,
+};
 use proboscis::math::Signal;
 
 /// The list: voltages, loads, charges and motions of every kind of function, with costs, limits and energies that read them.
@@ -86,4 +88,20 @@ pub fn timed() -> Vec<Case> {
             },
         ),
     ]
+}
+
+/// A function of each source that is constant in intervals which end at these times: a row for each interval, and one for the time afterwards.
+pub fn in_steps(ends: &[f64], rows: &[Vec<f64>], afterwards: Afterwards) -> Voltages {
+    let steps = |source: usize| Signal::Steps {
+        ends: ends.to_vec(),
+        values: rows.iter().map(|row| row[source]).collect(),
+    };
+    Voltages {
+        signals: (0..rows[0].len()).map(steps).collect(),
+        table: Some(TableEnd {
+            time: ends[ends.len() - 1],
+            afterwards,
+            solution: None,
+        }),
+    }
 }

@@ -293,7 +293,7 @@ fn swing(step: f64) -> Simulation {
             rates: BTreeMap::new(),
             velocities: Default::default(),
         },
-        voltages: Voltages::Constant(Vec::new()),
+        voltages: Voltages::default(),
         coordinates: None,
         solving: Solving::default(),
         controller: None,

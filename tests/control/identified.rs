@@ -39,7 +39,7 @@ fn voltages() -> Voltages {
         frequency: period.recip(),
         phase: 0.4,
     };
-    Voltages::Signals(vec![
+    Voltages::from(vec![
         sine(700.0, 120.0),
         Signal::ramp(0.0, 900.0, 150.0),
         sine(600.0, 80.0),

@@ -1,10 +1,11 @@
 //! An earlier solution on another mesh, or of lumped muscles: the guess is the motion under its voltages, and it is told.
 
 use crate::common::cases::rest_to_rest;
+use crate::common::timed::in_steps;
 use crate::common::trunk;
 use crate::guesses::{optimum, start};
 use crate::verdicts::{control, kept, output_of, read};
-use proboscis::control::problem::{Afterwards, Control, Guess, Voltages};
+use proboscis::control::problem::{Afterwards, Control, Guess};
 use proboscis::control::{BoundaryConditions, guess};
 use proboscis::model::System;
 use proboscis::model::system::{Discretisation, ElementKind, Fidelity};
@@ -23,15 +24,9 @@ fn changes(elements: [usize; 3]) -> [String; 4] {
 
 /// Coordinates of the motion of a system from the start of a problem under given voltages.
 fn under(system: &System, control: &Control, ends: &[f64], rows: &[Vec<f64>]) -> Vec<Vec<f64>> {
-    let last = rows[rows.len() - 1].clone();
+    let rows: Vec<_> = rows.iter().chain(rows.last()).cloned().collect();
     let control = Control {
-        guess: Guess::Simulate(Voltages::Sampled {
-            ends: ends.to_vec(),
-            rows: rows.iter().cloned().chain([last]).collect(),
-            afterwards: Afterwards::OfLastInterval,
-            solution: None,
-            others: Default::default(),
-        }),
+        guess: Guess::Simulate(in_steps(ends, &rows, Afterwards::OfLastInterval)),
         ..control.clone()
     };
     let h = control.duration.first() / control.intervals as f64;

@@ -41,7 +41,7 @@ fn voltages(period: f64) -> Voltages {
         frequency: period.recip(),
         phase: 0.4,
     };
-    Voltages::Signals(vec![sine, Signal::ramp(0.0, 900.0, 50.0)])
+    Voltages::from(vec![sine, Signal::ramp(0.0, 900.0, 50.0)])
 }
 
 /// The joint coordinate of the motion of the true material, with errors that no constants explain.

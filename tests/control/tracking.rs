@@ -1,12 +1,13 @@
 //! Motions that follow: a motion is found again from its joints alone, tips follow paths, ends are free, partly given, or turned.
 
 use crate::common::cases::{control, partly};
+use crate::common::timed::in_steps;
 use crate::common::tracked::square;
 use crate::common::trunk;
 use nalgebra::{Rotation3, Vector3};
 use proboscis::control::problem::{
-    BoundaryState, Control, CostFunction, Duration, During, Guess, Objective, Orientation, Task,
-    Voltages,
+    Afterwards, BoundaryState, Control, CostFunction, Duration, During, Guess, Objective,
+    Orientation, Task,
 };
 use proboscis::files::read_problem;
 use proboscis::math::Signal;
@@ -52,13 +53,9 @@ fn voltages_are_found_again_from_the_motion_of_the_joints() {
     };
     // A motion under known voltages, of the same grid.
     let mut known = free(&system, 20);
-    known.guess = Guess::Simulate(Voltages::Sampled {
-        ends: (1..=20).map(|k| 10.0 * f64::from(k)).collect(),
-        rows: (0..=20).map(voltages).collect(),
-        afterwards: proboscis::control::problem::Afterwards::OfLastInterval,
-        solution: None,
-        others: Default::default(),
-    });
+    let ends: Vec<f64> = (1..=20).map(|k| 10.0 * f64::from(k)).collect();
+    let rows: Vec<Vec<f64>> = (0..=20).map(voltages).collect();
+    known.guess = Guess::Simulate(in_steps(&ends, &rows, Afterwards::OfLastInterval));
     let h = 10.0;
     let (model, boundary) =
         proboscis::control::BoundaryConditions::resolve(&system, &known, h).unwrap();

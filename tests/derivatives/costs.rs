@@ -38,6 +38,7 @@ fn follow(signal: &Signal, t: f64) -> f64 {
             }
             sum
         }
+        Signal::Steps { ends, values } => values[ends.iter().filter(|end| **end <= t).count()],
     }
 }
 

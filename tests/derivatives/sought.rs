@@ -243,7 +243,7 @@ fn a_program_with_parameters_is_that_of_the_system_made_with_their_values() {
 #[test]
 fn a_parameter_is_one_column_and_given_ones_leave_none() {
     let system = robot();
-    let voltages = Voltages::Constant(vec![900.0, 700.0, 800.0, 0.0]);
+    let voltages = Voltages::constant(&[900.0, 700.0, 800.0, 0.0]);
     let sought = problem(&system, false, Some(voltages));
     let given = Control {
         parameters: Vec::new(),

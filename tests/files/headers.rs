@@ -1,6 +1,6 @@
 //! Units in headers of columns, and the clock of a recording.
 
-use proboscis::control::problem::{Recording, Task, Voltages};
+use proboscis::control::problem::{Recording, Task};
 use proboscis::files::{Loaded, read_problem};
 use std::fs;
 
@@ -168,10 +168,7 @@ fn inputs_of_the_same_file_lose_the_same_time() {
             r#", "time_offset": "2.5 s", "experiment": {{ "loads": {{ "pull": {{ "csv": {{ "file": "one.csv", "values": "f"{csv} }} }} }} }}"#
         )
     };
-    let at = |csv: &str, time: f64| match of(read(text, &pull(csv))).voltages {
-        Voltages::Signals(signals) => signals[0].at(time),
-        other => panic!("{other:?}"),
-    };
+    let at = |csv: &str, time: f64| of(read(text, &pull(csv))).voltages.at(time)[0];
     assert!((at("", 125.0) - 1.5).abs() < 1e-9 && (at("", 500.0) - 4.0).abs() < 1e-9);
     let own = r#", "time_offset": "2.75 s""#;
     assert!((at(own, 0.0) - 2.0).abs() < 1e-9 && (at(own, 125.0) - 3.0).abs() < 1e-9);

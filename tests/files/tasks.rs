@@ -1,13 +1,29 @@
 //! Tasks of problem files: methods, tables, solutions, given voltages.
 
 use crate::scene::{Case, PROBLEM, SCENE, check, folder, mistake};
-use proboscis::control::problem::{Afterwards, BoundaryState, Task, Voltages};
+use proboscis::control::problem::{Afterwards, BoundaryState, TableEnd, Task, Voltages};
 use proboscis::dynamics::Integrator;
 use proboscis::files::{driven_voltages, each_once, read_problem};
 use proboscis::math::Signal;
 use proboscis::model::Response;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+
+/// Voltages of two sources in intervals of 500 ms, and afterwards.
+fn in_steps(rows: [[f64; 3]; 2], afterwards: Afterwards, solution: Option<PathBuf>) -> Voltages {
+    let steps = |values: [f64; 3]| Signal::Steps {
+        ends: vec![500.0, 1000.0],
+        values: values.to_vec(),
+    };
+    Voltages {
+        signals: rows.map(steps).to_vec(),
+        table: Some(TableEnd {
+            time: 1000.0,
+            afterwards,
+            solution,
+        }),
+    }
+}
 
 #[test]
 fn the_method_of_a_simulation_is_read_and_checked() {
@@ -63,16 +79,14 @@ fn simulation_and_solution_are_checked() {
     let Task::Simulate(simulation) = read_problem(&path, &[]).expect("a simulation").task else {
         panic!("a simulation")
     };
-    let rows = vec![vec![100.0, 0.0], vec![200.0, 0.0], vec![200.0, 0.0]];
+    let rows = [[100.0, 200.0, 200.0], [0.0; 3]];
     assert_eq!(
         simulation.voltages,
-        Voltages::Sampled {
-            ends: vec![500.0, 1000.0],
+        in_steps(
             rows,
-            afterwards: Afterwards::OfLastInterval,
-            solution: Some(folder.path().join("solution.json")),
-            others: Default::default(),
-        }
+            Afterwards::OfLastInterval,
+            Some(folder.path().join("solution.json"))
+        )
     );
     let BoundaryState::JointAngles { angles, rates, .. } = simulation.start else {
         panic!("joint angles")
@@ -119,7 +133,7 @@ fn voltages_may_be_functions_of_time() {
     assert!((voltages.at(250.0)[0] - 150.0).abs() < 1e-9);
     assert_eq!(
         with_table(r#"{ "muscle1": "1 kV" }"#).unwrap(),
-        Voltages::Constant(vec![1000.0, 0.0])
+        Voltages::constant(&[1000.0, 0.0])
     );
     for (wrong, told) in [
         (r#"{ "muscle1": {} }"#, "ramp"),
@@ -244,17 +258,8 @@ fn a_place_that_is_set_twice_is_refused() {
 fn voltages_may_be_a_table() {
     let table = r#"{ "time": [0, "500 ms", 1], "voltages": { "muscle1": [100, "0.2 kV"] }, "hold": { "muscle1": 50 } }"#;
     let voltages = with_table(table).unwrap();
-    let rows = vec![vec![100.0, 0.0], vec![200.0, 0.0], vec![50.0, 0.0]];
-    assert_eq!(
-        voltages,
-        Voltages::Sampled {
-            ends: vec![500.0, 1000.0],
-            rows,
-            afterwards: Afterwards::Held,
-            solution: None,
-            others: Default::default(),
-        }
-    );
+    let rows = [[100.0, 200.0, 50.0], [0.0; 3]];
+    assert_eq!(voltages, in_steps(rows, Afterwards::Held, None));
     let at = |time| voltages.at(time)[0];
     assert_eq!([at(499.0), at(501.0), at(1500.0)], [100.0, 200.0, 50.0]);
     for (wrong, told) in [

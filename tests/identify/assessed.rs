@@ -49,7 +49,7 @@ fn under(name: &str, voltage: Signal, count: usize) -> Recording {
         name: name.into(),
         scene: None,
         regime: Regime::Motion,
-        voltages: Voltages::Signals(vec![voltage]),
+        voltages: Voltages::from(vec![voltage]),
         start: joint(0.0, 0.0),
         sought_start: SoughtStart::Nothing,
         is_held_out: false,

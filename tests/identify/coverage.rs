@@ -122,7 +122,7 @@ fn intervals_beside_a_weak_combination_hold_the_truth_in_95_percent_of_all_recor
             name: "released".into(),
             scene: None,
             regime: Regime::Motion,
-            voltages: Voltages::Constant(vec![0.0]),
+            voltages: Voltages::constant(&[0.0]),
             start: joint(10.0, 0.0),
             sought_start: SoughtStart::Nothing,
             is_held_out: false,

@@ -140,7 +140,7 @@ pub(crate) fn pair(
         name: "pair".into(),
         scene: None,
         regime,
-        voltages: Voltages::Signals(vec![sine(900.0), sine(300.0)]),
+        voltages: Voltages::from(vec![sine(900.0), sine(300.0)]),
         start,
         sought_start,
         is_held_out: false,

@@ -111,7 +111,7 @@ fn recording(channels: Vec<Channel>, regime: Regime) -> Recording {
         name: "two segments".into(),
         scene: None,
         regime,
-        voltages: Voltages::Signals(signals),
+        voltages: Voltages::from(signals),
         start: joint(if regime == Regime::Rest { 0.0 } else { 0.1 }, 0.0),
         sought_start: SoughtStart::Nothing,
         is_held_out: false,

@@ -59,7 +59,7 @@ fn step(onset: f64, deviation: f64, random: &mut Random) -> Recording {
         name: "step".into(),
         scene: None,
         regime: Regime::Motion,
-        voltages: Voltages::Signals(vec![force]),
+        voltages: Voltages::from(vec![force]),
         start: at_rest(),
         sought_start: SoughtStart::Nothing,
         is_held_out: false,
@@ -89,7 +89,7 @@ fn sought(recording: Recording) -> Identification {
 #[test]
 fn a_shifted_motion_depends_on_gain_and_delay_as_derivatives_say() {
     let mut recording = step(ONSET, 1.0, &mut Random::new(1));
-    recording.voltages = Voltages::Signals(vec![Signal::ramp(0.3, FORCE, 90.0)]);
+    recording.voltages = Voltages::from(vec![Signal::ramp(0.3, FORCE, 90.0)]);
     recording.start = BoundaryState::RestAtVoltages(vec![0.3], Default::default());
     let unknowns = Unknowns::of_values(&[0.22, 0.5, 1.1, 6.17], &[&[]]);
     let largest = compare(&pulled(), &sought(recording), &unknowns);
@@ -163,8 +163,7 @@ fn of_two_drivers() -> (System, Identification) {
         start: 31.0,
         duration: 0.0,
     };
-    task.recordings[0].voltages =
-        Voltages::Signals(vec![Signal::ramp(1200.0, 300.0, 60.0), switched]);
+    task.recordings[0].voltages = Voltages::from(vec![Signal::ramp(1200.0, 300.0, 60.0), switched]);
     (system, task)
 }
 
@@ -191,7 +190,7 @@ fn by_hand(truth: [f64; 3]) -> (System, Identification) {
         start: 31.0 + truth[2],
         duration: 0.0,
     };
-    known.recordings[0].voltages = Voltages::Signals(vec![table(truth[1]), switched]);
+    known.recordings[0].voltages = Voltages::from(vec![table(truth[1]), switched]);
     let unknowns = Unknowns::of_values(&truth[..1], &[&[]]);
     let mut grid = Grid::first(&known, &known.recordings);
     // Voltages switch at instants.

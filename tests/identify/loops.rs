@@ -45,7 +45,7 @@ fn task(
             name: "linkage".into(),
             scene: None,
             regime,
-            voltages: Voltages::Signals(voltages.collect()),
+            voltages: voltages.collect::<Vec<_>>().into(),
             start,
             sought_start,
             is_held_out: false,

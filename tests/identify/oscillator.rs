@@ -113,7 +113,7 @@ pub(crate) fn recording(
         name: name.into(),
         scene: None,
         regime: Regime::Motion,
-        voltages: Voltages::Constant(Vec::new()),
+        voltages: Voltages::default(),
         start: joint(start[0], start[1]),
         sought_start: SoughtStart::Nothing,
         is_held_out: false,

@@ -45,7 +45,7 @@ fn task(
         name: "tip".into(),
         scene: None,
         regime,
-        voltages: Voltages::Signals(voltages.map(|(mean, phase)| sine(mean, phase)).to_vec()),
+        voltages: Voltages::from(voltages.map(|(mean, phase)| sine(mean, phase)).to_vec()),
         start,
         sought_start,
         is_held_out: false,

@@ -45,7 +45,7 @@ fn recording(name: &str, velocity: f64, force: f64, random: &mut Random) -> Reco
         name: name.into(),
         scene: None,
         regime: Regime::Motion,
-        voltages: Voltages::Constant(vec![force]),
+        voltages: Voltages::constant(&[force]),
         start: joint(0.0, 0.0),
         sought_start: SoughtStart::State,
         is_held_out: false,

@@ -35,7 +35,7 @@ pub(crate) fn recording(name: &str, [from, to]: [f64; 2], force: f64) -> Recordi
         name: name.into(),
         scene: None,
         regime: Regime::Rest,
-        voltages: Voltages::Signals(vec![
+        voltages: Voltages::from(vec![
             Signal::ramp(from, to, 1000.0),
             Signal::Constant(force),
         ]),

@@ -63,7 +63,7 @@ fn recording() -> Recording {
         name: "step".into(),
         scene: None,
         regime: Regime::Motion,
-        voltages: Voltages::Signals(vec![Signal::ramp(0.0, 60e3, 6.0)]),
+        voltages: Voltages::from(vec![Signal::ramp(0.0, 60e3, 6.0)]),
         start,
         sought_start: SoughtStart::Nothing,
         is_held_out: false,
@@ -169,7 +169,7 @@ fn states_of_rest_of_a_block_follow_the_constants_of_its_law() {
         recording.regime = Regime::Rest;
         recording.channels[0].readings =
             [8, 15].map(|k| recording.channels[0].readings[k]).to_vec();
-        recording.voltages = Voltages::Signals(vec![Signal::ramp(0.0, 180e3, 30.0)]);
+        recording.voltages = Voltages::from(vec![Signal::ramp(0.0, 180e3, 30.0)]);
         let values: Vec<f64> = parameters.iter().map(|one| one.guess).collect();
         let task = Identification {
             parameters,

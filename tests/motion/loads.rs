@@ -81,7 +81,7 @@ fn task(load: &Signal, step: f64, coordinates: Coordinates) -> Simulation {
             rates: BTreeMap::new(),
             velocities: BTreeMap::new(),
         },
-        voltages: Voltages::Signals(vec![load.clone()]),
+        voltages: Voltages::from(vec![load.clone()]),
         coordinates: Some(coordinates),
         solving: Solving::default(),
         controller: None,
@@ -158,7 +158,7 @@ fn a_force_turns_a_hinge_like_weight_of_its_size() {
         // 10 g under 0.03 mm/ms² weigh 0.3 N.
         heavy.gravity = Some(0.03 * direction);
         let one = end(&pulled, &Signal::Constant(0.3), 1.0, coordinates);
-        let none = Voltages::Constant(Vec::new());
+        let none = Voltages::default();
         let task = Simulation {
             duration: DURATION,
             step: 1.0,
@@ -291,7 +291,7 @@ fn the_trunk_under_two_forces_moves_as_exudyn_computes() {
         for coordinates in BOTH {
             let task = Simulation {
                 duration: 300.0,
-                voltages: Voltages::Signals(sines.clone()),
+                voltages: Voltages::from(sines.clone()),
                 solving: Solving {
                     integrator,
                     ..Solving::default()

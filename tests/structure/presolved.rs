@@ -30,7 +30,7 @@ pub(crate) fn under(voltages: Vec<f64>, coordinates: Coordinates) -> Simulation 
         step: 5.0,
         tolerance: None,
         start: joints(&[]),
-        voltages: Voltages::Constant(voltages),
+        voltages: Voltages::constant(&voltages),
         coordinates: Some(coordinates),
         solving: Solving::default(),
         controller: None,
@@ -42,10 +42,7 @@ pub(crate) fn moved(system: &System, task: &Simulation) -> (Model, DiscreteTraje
     let analysis = task.analysis(system, task.step);
     let model = Model::for_analysis(system.clone(), analysis).unwrap();
     let start = resolve_start(&model, &task.start).unwrap();
-    let Voltages::Constant(row) = &task.voltages else {
-        panic!("constant voltages")
-    };
-    let scalars = model.scalars(row);
+    let scalars = model.scalars(&task.voltages.at(0.0));
     let steps = (task.duration / task.step) as usize;
     let (discrete, failure) = simulate(
         &model,
@@ -238,7 +235,7 @@ fn what_nothing_moves_is_not_solved_for() {
         let driven = |_: &mut System, t: &mut Simulation| {
             let mut row = volts(10);
             row[9] = 10.0;
-            t.voltages = Voltages::Constant(row);
+            t.voltages = Voltages::constant(&row);
         };
         assert_eq!(count(&driven), 5);
         assert_eq!(count(&|_, t| t.start = joints(&[(4, 0.1)])), 5);

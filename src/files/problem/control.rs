@@ -250,7 +250,7 @@ pub(crate) fn guess(spec: &GuessSpec, bounds: [f64; 2], at: &At<'_>) -> Result<G
         };
         "random" random |_, of| {
             let voltages = drawn(of.seed, at, bounds);
-            Ok(Guess::Simulate(Voltages::Constant(voltages)))
+            Ok(Guess::Simulate(Voltages::constant(&voltages)))
         };
     )
 }
@@ -266,7 +266,7 @@ pub(crate) fn unwritten(goal: &BoundaryState, system: &System) -> Guess {
     match goal {
         BoundaryState::Markers {
             hold: Some(hold), ..
-        } if has_elements => Guess::Simulate(Voltages::Constant(hold.clone())),
+        } if has_elements => Guess::Simulate(Voltages::constant(hold)),
         _ => Guess::Interpolate,
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Voltages over time are written by the names of sources, as those of an earlier `solution.json`, or as a table.
 
-use crate::control::problem::{Afterwards, BoundaryState, Duration, Voltages};
+use crate::control::problem::{Afterwards, BoundaryState, Duration, TableEnd, Voltages};
 use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::problem::at::{At, VoltageMap};
@@ -44,7 +44,7 @@ pub(crate) fn given_voltages(
         return Ok((by_source(map, at)?, None));
     }
     let course = over_time(spec, at)?;
-    let jumps = matches!(course, Voltages::Sampled { .. });
+    let jumps = course.table.is_some();
     refuse!(if jumps && matches!(duration, Duration::Free { .. }), at;
         found "voltages that jump from interval to interval where the duration is free",
         expected "functions of time by the names of sources, or a given duration");
@@ -96,7 +96,7 @@ pub(crate) fn check_rest_voltages(
 pub(crate) fn over_time(spec: &VoltagesSpec, at: &At<'_>) -> Result<Voltages> {
     match spec {
         VoltagesSpec::Signals(map) => {
-            let none = Voltages::Constant(vec![0.0; at.sources.len()]);
+            let none = Voltages::constant(&vec![0.0; at.sources.len()]);
             Ok(none.with(by_source(map, at)?))
         }
         VoltagesSpec::Solution(solution) => {
@@ -120,7 +120,7 @@ fn of_solution(path: &Path, system: &System) -> Result<Voltages> {
         .ok_or_else(|| at.missing_key("voltages"))?;
     let all_series = voltages.iter();
     let all_series = all_series.map(|(name, series)| (name, series.iter().copied()));
-    let rows = rows(&instants, all_series, &at)?;
+    let rows = by_interval(&instants, all_series, &at)?;
     let hold = at.optional("hold", &solution.hold, |at, hold| {
         let mut row = vec![0.0; at.sources.len()];
         for (name, &voltage) in hold {
@@ -128,7 +128,7 @@ fn of_solution(path: &Path, system: &System) -> Result<Voltages> {
         }
         Ok(row)
     })?;
-    Ok(sampled(instants, rows, hold, Some(path.to_owned())))
+    Ok(in_steps(&instants, rows, hold, Some(path.to_owned())))
 }
 
 /// Voltages of a table, then those that it says are held, or the last ones; 0 for sources that it does not name.
@@ -136,15 +136,15 @@ fn of_table(table: &TableSpec, at: &At<'_>) -> Result<Voltages> {
     let instants: Vec<f64> = table.time.iter().map(|time| time.value()).collect();
     let all_series = table.voltages.iter();
     let all_series = all_series.map(|(name, series)| (name, series.iter().map(Quantity::value)));
-    let rows = rows(&instants, all_series, at)?;
+    let rows = by_interval(&instants, all_series, at)?;
     refuse!(if instants[0] != 0.0, at.key("time").index(0);
         found format!("{} s", instants[0] / 1e3), expected "0");
     let hold = at.optional("hold", &table.hold, At::voltages)?;
-    Ok(sampled(instants, rows, hold, None))
+    Ok(in_steps(&instants, rows, hold, None))
 }
 
-/// A row of voltages for each interval between instants in ms, and one of zeros for what follows.
-fn rows<'a>(
+/// Voltages of each source in the intervals between instants in ms, and afterwards those of the last one.
+fn by_interval<'a>(
     instants: &[f64],
     all_series: impl Iterator<Item = (&'a String, impl ExactSizeIterator<Item = f64>)>,
     at: &At<'_>,
@@ -154,40 +154,46 @@ fn rows<'a>(
         found format!("{} instants", instants.len()), expected "2 instants or more");
     place.increasing(instants)?;
     let intervals = instants.len() - 1;
-    let mut rows = vec![vec![0.0; at.sources.len()]; intervals + 1];
+    let mut rows = vec![vec![0.0; intervals + 1]; at.sources.len()];
     for (name, series) in all_series {
         let place = at.key("voltages").key(name);
         let source = place.driven(name)?;
         refuse!(if series.len() != intervals, place;
             found format!("{} voltages", series.len()),
             expected format!("{intervals}, one per interval"));
-        for (row, voltage) in rows.iter_mut().zip(series) {
-            row[source] = voltage;
-        }
+        let row = &mut rows[source];
+        row.iter_mut()
+            .zip(series)
+            .for_each(|(own, voltage)| *own = voltage);
+        row[intervals] = row[intervals - 1];
     }
     Ok(rows)
 }
 
-/// Rows of voltages, the last one those afterwards.
-fn sampled(
-    mut instants: Vec<f64>,
+/// Voltages of each source in intervals, followed by those that are held.
+fn in_steps(
+    instants: &[f64],
     mut rows: Vec<Vec<f64>>,
     hold: Option<Vec<f64>>,
     solution: Option<PathBuf>,
 ) -> Voltages {
-    let afterwards = match hold {
-        Some(_) => Afterwards::Held,
-        None => Afterwards::OfLastInterval,
+    let last = instants.len() - 1;
+    let held = rows.iter_mut().zip(hold.iter().flatten());
+    held.for_each(|(row, voltage)| row[last] = *voltage);
+    let steps = |values| Signal::Steps {
+        ends: instants[1..].to_vec(),
+        values,
     };
-    let end = rows.len() - 1;
-    rows[end] = hold.unwrap_or_else(|| rows[end - 1].clone());
-    instants.remove(0);
-    Voltages::Sampled {
-        ends: instants,
-        rows,
-        afterwards,
-        solution,
-        others: BTreeMap::new(),
+    Voltages {
+        signals: rows.into_iter().map(steps).collect(),
+        table: Some(TableEnd {
+            time: instants[last],
+            afterwards: match hold {
+                Some(_) => Afterwards::Held,
+                None => Afterwards::OfLastInterval,
+            },
+            solution,
+        }),
     }
 }
 
