@@ -9,12 +9,13 @@
 //!
 //! Without constraints all coordinates are independent. Where y does not determine w, as in a dead point, T is not a number.
 
-use crate::coordinates::Configuration;
-use crate::dynamics::loop_rates::{IndependentChanges, gradients};
+use crate::coordinates::{Configuration, Scratch};
+use crate::dynamics::loop_rates::{SETTLED, UPDATES, gradients};
 use crate::dynamics::momenta::directions;
 use crate::functional::Order;
 use crate::math::Vector;
 use crate::model::{Coordinates, Model, independent_rows};
+use crate::sparse::Direct;
 use nalgebra::{DMatrix, DVector};
 use thiserror::Error;
 
@@ -118,18 +119,12 @@ impl Independent {
 
     /// Lets the other coordinates and their rates follow; none is a number where the loops cannot be closed.
     pub fn close(&self, model: &Model, z: &mut [f64], rates: &mut [f64]) {
-        if self.dependent.is_empty() {
-            return;
+        let mut instant = model.action.map.placed(z);
+        if !Closing::new(model, self).close(model, &mut instant, rates) {
+            self.dependent.iter().for_each(|&i| rates[i] = f64::NAN);
+            instant.z.fill(f64::NAN);
         }
-        let changes = IndependentChanges::of(model, z.to_vec(), &self.free);
-        match changes.changed(&vec![0.0; self.free.len()]) {
-            Some((closed, _)) => z.copy_from_slice(&closed),
-            None => z.fill(f64::NAN),
-        }
-        for (i, slopes) in self.slopes(model, z).followers() {
-            let moved = slopes.iter().zip(&self.free);
-            rates[i] = moved.map(|(slope, &own)| slope * rates[own]).sum();
-        }
+        z.copy_from_slice(&instant.z);
     }
 
     /// Makes momenta of a state those that act as they do, with zeros of the coordinates that follow.
@@ -224,6 +219,97 @@ impl Slopes {
     pub fn followers(&self) -> impl Iterator<Item = (usize, DVector<f64>)> + '_ {
         let rows = self.by_free.row_iter().map(|row| row.transpose());
         self.dependent.iter().copied().zip(rows)
+    }
+}
+
+/// Storage in which coordinates follow from the independent ones.
+#[derive(Debug)]
+pub struct Closing {
+    dependent: Vec<usize>,
+    sizes: Vec<f64>,
+    scratch: Scratch,
+    values: Vec<f64>,
+    /// Γ_w, and the slots of its entries among the values.
+    matrix: Direct,
+    slots: Vec<usize>,
+    entries: Vec<f64>,
+    /// Entries of Γ_y: slot, constraint and coordinate.
+    others: Vec<[usize; 3]>,
+    step: Vec<f64>,
+}
+
+impl Closing {
+    /// That of a model with these independent coordinates.
+    pub fn new(model: &Model, of: &Independent) -> Self {
+        let (action, n) = (&model.action, model.coordinate_count());
+        let (sizes, pattern) = (model.sizes(), action.layout());
+        let (mut places, mut slots, mut others) = (Vec::new(), Vec::new(), Vec::new());
+        let entries = pattern.same.entries().enumerate();
+        for (slot, (i, j)) in entries.filter(|(_, (i, j))| *i < n && *j >= n) {
+            if let Some(place) = of.dependent.iter().position(|&own| own == i) {
+                places.push((j - n, place));
+                slots.push(slot);
+            } else if of.free.contains(&i) {
+                others.push([slot, j - n, i]);
+            }
+        }
+        Self {
+            sizes: of.dependent.iter().map(|&i| sizes[i]).collect(),
+            scratch: action.scratch(Order::Hessian),
+            values: vec![0.0; pattern.values(0)],
+            matrix: Direct::new(of.dependent.len(), &places),
+            entries: vec![0.0; slots.len()],
+            step: vec![0.0; of.dependent.len()],
+            dependent: of.dependent.clone(),
+            slots,
+            others,
+        }
+    }
+
+    /// Lets the other coordinates of an instant and their rates follow, from where they are; false where the loops cannot be closed.
+    pub fn close(&mut self, model: &Model, instant: &mut Configuration, rates: &mut [f64]) -> bool {
+        let mut update = if self.dependent.is_empty() {
+            0.0
+        } else {
+            f64::INFINITY
+        };
+        for _ in 0..UPDATES {
+            if update <= SETTLED {
+                break;
+            }
+            if !self.factor(model, instant) {
+                return false;
+            }
+            let gaps = self.step.iter_mut().zip(&self.scratch.instant.plain.rows);
+            gaps.for_each(|(step, gap)| *step = -gap);
+            self.matrix.solve(&mut self.step);
+            update = 0.0;
+            for ((&i, step), size) in self.dependent.iter().zip(&self.step).zip(&self.sizes) {
+                instant.z[i] += step;
+                update = f64::max(update, step.abs() / size);
+            }
+        }
+        self.step.fill(0.0);
+        for &[slot, row, i] in &self.others {
+            self.step[row] -= self.values[slot] * rates[i];
+        }
+        self.matrix.solve(&mut self.step);
+        let all = self.dependent.iter().zip(&self.step);
+        all.for_each(|(&i, rate)| rates[i] = *rate);
+        update <= SETTLED && self.step.iter().all(|rate| rate.is_finite())
+    }
+
+    /// Evaluates constraints and their gradients, and factorises those of the coordinates that follow.
+    fn factor(&mut self, model: &Model, instant: &mut Configuration) -> bool {
+        let (action, scratch, values) = (&model.action, &mut self.scratch, &mut self.values);
+        action.map.place(instant);
+        instant.forces.fill(Vector::zeros());
+        values.fill(0.0);
+        action.evaluate_instant(Order::Hessian, instant, &[], scratch);
+        action.pull_back_instant(Order::Hessian, instant, 0, scratch, values);
+        let entries = self.entries.iter_mut().zip(&self.slots);
+        entries.for_each(|(entry, &slot)| *entry = values[slot]);
+        self.matrix.factor(&self.entries).is_ok()
     }
 }
 

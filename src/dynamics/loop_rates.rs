@@ -210,9 +210,9 @@ impl Named<'_> {
 /// Singular values below this part of the greatest are none.
 const NONE: f64 = 1e-11;
 /// Updates of Newton's method.
-const UPDATES: usize = 50;
+pub(super) const UPDATES: usize = 50;
 /// An update this small, relative to the sizes of coordinates, is the last one.
-const SETTLED: f64 = 1e-13;
+pub(super) const SETTLED: f64 = 1e-13;
 /// Constraints may be violated by this part of the size of a system.
 const CLOSED: f64 = 1e-9;
 
@@ -260,18 +260,6 @@ impl<'m> IndependentChanges<'m> {
             z,
             basis,
         })
-    }
-
-    /// The changes of coordinates that determine the others at coordinates z₀.
-    pub(super) fn of(model: &'m Model, z: Vec<f64>, coordinates: &[usize]) -> Self {
-        let count = model.coordinate_count();
-        let of = |row: usize, column: usize| f64::from(u8::from(coordinates[column] == row));
-        Self {
-            are_memories: coordinates.iter().map(|&i| model.is_memory(i)).collect(),
-            model,
-            z,
-            basis: DMatrix::from_fn(count, coordinates.len(), of),
-        }
     }
 
     /// The basis, a column for each change.

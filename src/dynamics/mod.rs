@@ -44,7 +44,7 @@ pub use equilibrium::{
 pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};
 pub use galerkin::GalerkinEquations;
-pub use independent::{Independent, NoState, Slopes};
+pub use independent::{Closing, Independent, NoState, Slopes};
 pub use loop_rates::{IndependentChanges, rates_in_loops};
 pub use midpoint::{Midpoint, Stepper};
 pub use momenta::{Start, last_momentum, rates_of_momentum};

@@ -44,6 +44,7 @@ mod reaction_limits;
 mod reaction_torques;
 mod receding;
 mod receding_limits;
+mod receding_loops;
 mod reference;
 mod resample;
 mod resisted_energies;

@@ -18,6 +18,7 @@
 
 use crate::control::{Column, Row};
 use crate::coordinates::Configuration;
+use crate::dynamics::Closing;
 use crate::math::Vector;
 use crate::nlp::Nlp;
 use crate::stop;
@@ -76,6 +77,7 @@ pub struct RecedingHorizon<'h> {
     inputs: Vec<f64>,
     /// Places of the state that is measured.
     instant: Configuration,
+    closing: Closing,
     moving: Vec<Vector>,
     rates: Vec<f64>,
     momenta: Vec<f64>,
@@ -113,6 +115,7 @@ impl<'h> RecedingHorizon<'h> {
             residual: Residual::default(),
             inputs: vec![0.0; law.inputs.len()],
             instant: model.action.map.placed(&model.reference_coordinates()),
+            closing: Closing::new(model, &of.steered.independent),
             moving: vec![Vector::zeros(); model.action.map.vectors.len()],
             rates: vec![0.0; model.coordinate_count()],
             momenta: vec![0.0; model.coordinate_count()],
@@ -266,11 +269,9 @@ impl<'h> RecedingHorizon<'h> {
                 return;
             }
             self.stay();
-            let Iteration { program, .. } = &mut self.iteration;
-            let inert = &program.steered.inert;
-            for (momentum, &c) in program.momentum.iter_mut().zip(inert) {
-                *momentum = self.momenta[self.of.steered.coordinates[c]];
-            }
+            let moved = self.of.steered.moved();
+            let momenta = self.iteration.program.momentum.iter_mut();
+            momenta.zip(moved).for_each(|(to, i)| *to = self.momenta[i]);
             let full = &mut self.points[0];
             if !self.iteration.prepare() || !self.iteration.advance(&self.changes, &self.rows, full)
             {
@@ -327,13 +328,18 @@ impl<'h> RecedingHorizon<'h> {
             is_far |= (rate - motion).abs() * law.h > ABSURD_RATE * unit(c);
             self.rates[coordinates[c]] = *rate;
         }
-        let action = &model.action;
-        action.map.place(&mut self.instant);
+        let followers = self.of.steered.independent.followers().iter();
+        for (&i, &(column, scale)) in followers.zip(&program.followers) {
+            self.instant.z[i] = scale * x[column];
+        }
+        let (action, instant) = (&model.action, &mut self.instant);
+        is_far |= !self.closing.close(model, instant, &mut self.rates);
+        action.map.place(instant);
         let (moving, momenta) = (&mut self.moving, &mut self.momenta);
-        action.momentum_into(&mut self.instant, &self.rates, moving, momenta);
-        for (place, &c) in program.steered.inert.iter().enumerate() {
+        action.momentum_into(instant, &self.rates, moving, momenta);
+        for (place, i) in self.of.steered.moved().enumerate() {
             let (row, scale) = program.momenta[0][place];
-            let change = self.momenta[coordinates[c]] - program.momentum[place];
+            let change = self.momenta[i] - program.momentum[place];
             self.rows[place] = (row, scale * change);
         }
         is_far

@@ -4,7 +4,7 @@ use crate::control::problem::{
     Ahead, BoundaryState, Control, Duration, Guess, Limit, Objective, Regulator, Rest, SoughtHold,
 };
 use crate::control::{BoundaryConditions, BoundaryError, InitialGuess, Rests, Transcription};
-use crate::dynamics::{DiscreteTrajectory, step_inputs};
+use crate::dynamics::{DiscreteTrajectory, Independent, step_inputs};
 use crate::feedback::{Law, Measured};
 use crate::ipopt::{IpoptError, Options, StartingPoint, solve};
 use crate::model::{Model, Role, System, Time};
@@ -83,10 +83,12 @@ impl Horizon {
         let is_inert = |&c: &usize| rates.iter().any(|rate| rate.name == places[c].name);
         let inputs = step_inputs(&model).into_iter().zip(&found.law.inputs);
         let forces = found.law.lasting().iter();
+        let coordinates: Vec<usize> = places.iter().map(|one| named(&model, &one.name)).collect();
         let steered = Steered {
+            independent: Independent::of(&model, coordinates.clone()),
             rates: found.steps[0].rates[..places.len()].to_vec(),
             forced: forces.map(|one| named(&model, &one.name)).collect(),
-            coordinates: places.iter().map(|one| named(&model, &one.name)).collect(),
+            coordinates,
             inert: (0..places.len()).filter(is_inert).collect(),
             inputs: inputs
                 .map(|(input, of)| (input.scalar, of.is_squared))
@@ -94,8 +96,7 @@ impl Horizon {
             parts,
             h: h / parts as f64,
         };
-        let momenta = |state: &[f64]| steered.momenta(&model, state);
-        let reference = Reference::new(&found, momenta).ok_or_else(not_held)?;
+        let reference = Reference::new(&found, &model, &steered).ok_or_else(not_held)?;
         Ok(Self {
             delay: task.delayed(h),
             of_inputs: task.inputs,
@@ -173,7 +174,13 @@ impl Horizon {
         let start = program.readings.iter().zip(state);
         let start = start.take(self.steered.coordinates.len());
         let values: Vec<f64> = start.map(|(reading, v)| v / reading.scale).collect();
-        let momenta = self.steered.momenta(&self.model, state);
+        let mut z = self.boundary.start.z.clone();
+        let followers = self.steered.independent.followers();
+        let of_motion = &self.reference.at(interval).followers;
+        let near = followers.iter().zip(of_motion);
+        near.for_each(|(&i, value)| z[i] = *value);
+        let momentum = self.steered.start(&self.model, state, z).momentum;
+        let momenta: Vec<f64> = self.steered.moved().map(|i| momentum[i]).collect();
         program.hold_start(&values, &momenta);
         let mut x = vec![0.0; program.variables().count()];
         program.refer_all(&mut x);
@@ -203,8 +210,10 @@ impl Horizon {
         let Steered { parts, h, .. } = self.steered;
         let mut z = vec![self.boundary.start.z.clone(); steps + 1];
         for (k, z) in z.iter_mut().enumerate() {
-            let state = &self.reference.at(k / parts).state;
-            let each = self.steered.coordinates.iter().zip(state);
+            let at = self.reference.at(k / parts);
+            let followers = self.steered.independent.followers();
+            let each = self.steered.coordinates.iter().zip(&at.state);
+            let each = each.chain(followers.iter().zip(&at.followers));
             each.for_each(|(&i, value)| z[i] = *value);
         }
         let count = self.model.variables.of(Time::Interval).len();
@@ -231,9 +240,6 @@ fn offered(model: &Model, control: &Control) -> Result<(), NoHorizon> {
     let not = |what| Err(NoHorizon::NotOffered(what));
     if !model.prescribed.is_empty() {
         return not("a prescribed joint");
-    }
-    if model.has_loops() {
-        return not("a closed loop");
     }
     if !control.given.is_empty() || control.course.is_some() {
         return not("a given input");

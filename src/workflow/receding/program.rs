@@ -10,7 +10,7 @@
 //! deviations `d`, `½ dᵀW d`, and their derivatives follow from those of the deviations.
 
 use crate::control::{Column, Numbering, Transcription};
-use crate::dynamics::Start;
+use crate::dynamics::{Independent, Start};
 use crate::feedback::{self, product};
 use crate::model::Model;
 use crate::nlp::squares::{InSquares, Squares};
@@ -31,8 +31,10 @@ pub(super) struct Program<'m> {
     pub(super) readings: Vec<Reading>,
     /// Place of the first one of the end.
     end: usize,
-    /// Rows of the momenta of the first and of the last instant, with their scales.
+    /// Rows of the momenta of the first instant, of all that has some there, and of the last one, with their scales.
     pub(super) momenta: [Vec<(usize, f64)>; 2],
+    /// Instant by instant the columns of the coordinates that follow from those of the state, with their factors.
+    pub(super) followers: Vec<(usize, f64)>,
     /// Rows on which constant disturbances act, with the scaled time of their action, and the number of the force.
     forced: Vec<(usize, f64, usize)>,
     bounds: Bounds,
@@ -47,7 +49,7 @@ pub(super) struct Program<'m> {
     pub(super) columns: usize,
     /// Instant of the reference at which the horizon begins.
     pub(super) begin: usize,
-    /// Momenta at the start, in the order of the state.
+    /// Momenta at the start, in the order of their rows.
     pub(super) momentum: Vec<f64>,
     /// Deviation of each reading at the point evaluated last, with its first and second derivative by the column, and the slope of the costs by it.
     deviations: Vec<[f64; 3]>,
@@ -78,13 +80,22 @@ impl<'m> Program<'m> {
         let (state, inputs) = (steered.coordinates.len() + inert, steered.inputs.len());
         let intervals = motion.intervals() / steered.parts;
         let columns = motion.variables().count();
-        let row = |k: usize, c: usize| {
-            let row = motion.unknowns().row(k, steered.coordinates[c]);
-            let row = row.expect("a balance");
+        let row = |k: usize, i: usize| {
+            let row = motion.unknowns().row(k, i).expect("a balance");
             (row, motion.row_scale(row))
         };
-        let of_instant = |k: usize| steered.inert.iter().map(|&c| row(k, c)).collect();
-        let momenta: [Vec<(usize, f64)>; 2] = [0, motion.intervals()].map(of_instant);
+        let followers = steered.independent.followers();
+        let at_start: Vec<_> = steered.moved().map(|i| row(0, i)).collect();
+        let at_end = steered.inert().map(|i| row(motion.intervals(), i));
+        let momenta = [at_start, at_end.collect()];
+        let instants = (0..=motion.intervals()).step_by(steered.parts);
+        let followers = instants.flat_map(|k| followers.iter().map(move |&i| (k, i)));
+        let followers = followers.map(|(k, i)| {
+            let column = motion.unknowns().unknown(k, i);
+            let column = column.expect("an open coordinate");
+            (column, motion.column_scale(column))
+        });
+        let followers: Vec<(usize, f64)> = followers.collect();
         let squares = motion.squares();
         let of_squares = Squares::of(&motion, squares.clone());
         let mut ones = vec![1.0; columns];
@@ -117,8 +128,9 @@ impl<'m> Program<'m> {
             slopes: vec![0.0; readings.len()],
             readings,
             end,
+            momentum: vec![0.0; momenta[0].len()],
             momenta,
-            momentum: vec![0.0; inert],
+            followers,
             lasting: Lasting {
                 values: vec![0.0; steered.forced.len() + inputs],
                 state: vec![0.0; state],
@@ -204,6 +216,9 @@ impl<'m> Program<'m> {
             };
             x[reading.column] = value / reading.scale;
         }
+        let values = &self.reference.at(self.begin + k).followers;
+        let followers = self.followers[k * values.len()..].iter().zip(values);
+        followers.for_each(|(&(column, scale), value)| x[column] = value / scale);
     }
 
     /// The motion that is followed as values of the columns, on straight lines between its instants.
@@ -480,23 +495,35 @@ pub(super) struct Steered {
     pub(super) rates: Vec<f64>,
     /// Coordinates on which constant disturbances act.
     pub(super) forced: Vec<usize>,
+    /// The coordinates of the state, which determine all others.
+    pub(super) independent: Independent,
     /// Number of steps in an interval, and the length of one in ms.
     pub(super) parts: usize,
     pub(super) h: f64,
 }
 
 impl Steered {
-    /// Momenta of a state of coordinates and rates.
-    pub(super) fn momenta(&self, model: &Model, state: &[f64]) -> Vec<f64> {
-        let of = &self.coordinates;
-        let mut z = model.reference_coordinates();
+    /// The coordinates of the state that have momenta.
+    pub(super) fn inert(&self) -> impl Iterator<Item = usize> + '_ {
+        self.inert.iter().map(|&c| self.coordinates[c])
+    }
+
+    /// All coordinates that have momenta.
+    pub(super) fn moved(&self) -> impl Iterator<Item = usize> + '_ {
+        let followers = self.independent.followers();
+        self.inert().chain(followers.iter().copied())
+    }
+
+    /// The start at a state of coordinates and rates; others follow from where they are at z.
+    pub(super) fn start(&self, model: &Model, state: &[f64], mut z: Vec<f64>) -> Start {
+        let (places, of_rates) = state.split_at(self.coordinates.len());
         let mut rates = vec![0.0; model.coordinate_count()];
-        of.iter().zip(state).for_each(|(&i, value)| z[i] = *value);
-        let of_rates = self.inert.iter().zip(&state[of.len()..]);
-        of_rates.for_each(|(&c, rate)| rates[of[c]] = *rate);
-        let start = Start::with_rates(model, z, &rates);
-        let inert = self.inert.iter();
-        inert.map(|&c| start.momentum[of[c]]).collect()
+        let coordinates = self.coordinates.iter().zip(places);
+        coordinates.for_each(|(&i, value)| z[i] = *value);
+        let inert = self.inert().zip(of_rates);
+        inert.for_each(|(i, rate)| rates[i] = *rate);
+        self.independent.close(model, &mut z, &mut rates);
+        Start::with_rates(model, z, &rates)
     }
 }
 
@@ -505,6 +532,8 @@ impl Steered {
 pub(super) struct Point {
     /// Coordinates, then momenta of those that have them.
     pub(super) state: Vec<f64>,
+    /// Coordinates that follow from these.
+    pub(super) followers: Vec<f64>,
     /// Inputs of the interval behind it, or their squares: V, V², N, N mm.
     pub(super) inputs: Vec<f64>,
     /// Cost of the coordinates.
@@ -527,8 +556,8 @@ pub(super) struct Reference {
 }
 
 impl Reference {
-    /// That of a regulator, with the momenta of a state; none where the goal is not held.
-    pub(super) fn new(of: &Regulated, momenta: impl Fn(&[f64]) -> Vec<f64>) -> Option<Self> {
+    /// That of a regulator; none where the goal is not held.
+    pub(super) fn new(of: &Regulated, model: &Model, steered: &Steered) -> Option<Self> {
         let (held_step, held) = of.held.as_ref()?;
         let law = &of.law;
         let mut after = of.end_cost.clone();
@@ -538,8 +567,20 @@ impl Reference {
             ends.push(after.clone());
         }
         ends.reverse();
-        let point = |at: &feedback::Point, step: &RegulatedStep, end: &DMatrix<f64>| Point {
-            state: [&at.state[..step.places.nrows()], &momenta(&at.state)].concat(),
+        let mut z = model.reference_coordinates();
+        let mut point = |at: &feedback::Point, step: &RegulatedStep, end: &DMatrix<f64>| Point {
+            state: {
+                let start = steered.start(model, &at.state, mem::take(&mut z));
+                let mut momentum = start.momentum;
+                z = start.z;
+                steered.independent.reduce(model, &z, &mut momentum);
+                let momenta = steered.inert().map(|i| momentum[i]);
+                let places = at.state[..step.places.nrows()].iter().copied();
+                places.chain(momenta).collect()
+            },
+            followers: (steered.independent.followers().iter())
+                .map(|&i| z[i])
+                .collect(),
             inputs: (law.inputs.iter().zip(&at.inputs))
                 .map(|(of, input)| of.acting(*input))
                 .collect(),
