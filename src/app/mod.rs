@@ -41,7 +41,7 @@ pub use equilibrium::equilibrium_of_file;
 pub use error::CommandError;
 pub use inspect::{Inspected, inspect, inspected};
 pub use kept::cache::run_once;
-pub(crate) use kept::cache::{Found, found, identity, identity_of_words};
+pub(crate) use kept::cache::{found, identity, identity_of_words};
 pub(crate) use kept::record::{make_folder, without_dots};
 pub use multistart::solve_from_starts;
 pub use program::{

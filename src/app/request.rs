@@ -6,6 +6,7 @@ use crate::files::is_standard_input;
 use crate::report::origin::Origin;
 use crate::report::{Figures, PageContent};
 use crate::workflow::accuracy::AccuracyTarget;
+use serde::{Deserialize, Serialize};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
@@ -56,7 +57,7 @@ impl PageWanted {
 }
 
 /// The answer of a command.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CommandOutput {
     /// True if the task has an answer: exit status 0, otherwise 1.
     pub is_solved: bool,
@@ -79,7 +80,7 @@ impl CommandInput {
     }
 
     /// Words of a command on the same problem with the same overrides and folder.
-    pub(super) fn words(&self, command: &str) -> Vec<String> {
+    pub(crate) fn words(&self, command: &str) -> Vec<String> {
         let mut words = ["proboscis", command].map(str::to_owned).to_vec();
         words.push(self.input.display().to_string());
         let set = self.set.iter();

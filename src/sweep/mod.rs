@@ -1,21 +1,18 @@
 //! Variants of one problem, solved in parallel, each in a folder of its own; variants that are solved already are not solved again.
 //!
-//! - `read`: the sweep file and its variants.
-//! - `variant_end`: end of a variant; `table`: all of them together, and their page.
+//! - `read`: the sweep file and its variants; `table`: all of them with their ends, and their page.
 
 mod read;
 mod table;
-mod variant_end;
 
 use crate::app::{
-    Batch, CommandError, CommandInput, CommandOutput, Ended, Found, RunIn, check_run_in, found,
+    Batch, CommandError, CommandInput, CommandOutput, Ended, RunIn, check_run_in, found,
     make_folder, run_all,
 };
 use crate::report::atomic;
 use crate::report::table::cells_csv;
 use crate::stop;
 use crate::sweep::read::{Sweep, Variant, read_sweep};
-use crate::sweep::variant_end::VariantEnd;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use std::str::FromStr;
@@ -40,60 +37,67 @@ pub fn sweep(
     make_folder(&folder)?;
 
     // By identity, so that equal variants are solved once.
-    let mut ends: BTreeMap<&str, VariantEnd> = BTreeMap::new();
+    let mut ends: BTreeMap<&str, Ended> = BTreeMap::new();
     let mut todo: Vec<&Variant> = Vec::new();
-    let mut before = Before::default();
+    let (mut found_before, mut deviations) = (0, Vec::new());
     for (index, variant) in sweep.variants.iter().enumerate() {
         let identity = variant.identity.as_str();
         if ends.contains_key(identity) {
             continue;
         }
-        let kept = match &variant.refused {
-            Some(message) => Some(VariantEnd::without_results("refused", message)),
-            None => before.of(variant, &variant.folder(&folder)),
+        let of_variant = variant.folder(&folder);
+        let kept = found(&of_variant, identity).unwrap_or_else(|words| {
+            deviations.push(format!(
+                "variant {identity} does not count as solved: {words}"
+            ));
+            None
+        });
+        let kept = kept.and_then(|output| Ended::of_folder(&of_variant, output.is_solved));
+        let end = match (&variant.refused, kept) {
+            (Some(message), _) => Ended::without_results("refused", message, 0.0),
+            (None, Some(end)) => {
+                found_before += 1;
+                end
+            }
+            (None, None) => {
+                todo.extend(shard.has(index).then_some(variant));
+                Ended::without_results("not_started", "", 0.0)
+            }
         };
-        if kept.is_none() && shard.has(index) {
-            todo.push(variant);
-        }
-        // What is to be solved has not started yet.
-        let end = kept.unwrap_or_else(|| VariantEnd::without_results("not_started", ""));
         ends.insert(identity, end);
     }
     let run_in = run_in.of_tasks(sweep.run_at_once);
     solve(request, &sweep, &todo, run_in, began, &mut ends)?;
 
     let identities = sweep.variants.iter().map(|one| one.identity.as_str());
-    let ends: Vec<&VariantEnd> = identities.map(|identity| &ends[identity]).collect();
+    let ends: Vec<&Ended> = identities.map(|identity| &ends[identity]).collect();
     write(request, &sweep, &ends, &folder)?;
-    Ok(command_output(shard, &sweep, &ends, before, &folder, began))
-}
-
-/// Results that the folders of the variants held before.
-#[derive(Default)]
-struct Before {
-    /// Variants that were whole.
-    found: usize,
-    /// Words on those that were not.
-    deviations: Vec<String>,
-}
-
-impl Before {
-    /// The end of a variant, where its folder holds all of it.
-    fn of(&mut self, variant: &Variant, folder: &Path) -> Option<VariantEnd> {
-        let name = &variant.identity;
-        match found(folder, name) {
-            Found::Whole(record) => {
-                self.found += 1;
-                Ended::of_folder(folder, record.is_solved).map(VariantEnd::new)
-            }
-            Found::Deviates(words) => {
-                self.deviations
-                    .push(format!("variant {name} does not count as solved: {words}"));
-                None
-            }
-            Found::Nothing => None,
-        }
+    let mut notes = first(deviations);
+    notes.extend(messages(&sweep, &ends));
+    if stop::requested() {
+        notes.push("interrupted; the same command goes on".to_owned());
     }
+    let own = ends.iter().enumerate();
+    let mut own = own.filter(|(index, _)| shard.has(*index));
+    let is_complete = own.all(|(_, end)| !end.summary.is_unfinished());
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for end in &ends {
+        *counts.entry(&end.summary.status).or_default() += 1;
+    }
+    let counts = counts.iter().map(|(word, count)| format!("{count} {word}"));
+    let before = (found_before > 0).then(|| format!("{found_before} found solved before"));
+    let counts: Vec<String> = counts.chain(before).collect();
+    Ok(CommandOutput {
+        is_solved: ends.iter().any(|end| end.is_solved) && is_complete,
+        result: format!(
+            "{} variants: {}, {:.1} s, {}",
+            ends.len(),
+            counts.join(", "),
+            began.elapsed().as_secs_f64(),
+            folder.display()
+        ),
+        notes,
+    })
 }
 
 /// Solves variants, each as a run that is made once.
@@ -103,7 +107,7 @@ fn solve<'a>(
     todo: &[&'a Variant],
     run_in: RunIn,
     began: Instant,
-    ends: &mut BTreeMap<&'a str, VariantEnd>,
+    ends: &mut BTreeMap<&'a str, Ended>,
 ) -> Result<(), CommandError> {
     let results = request.folder();
     let run = |variant: &&Variant| CommandInput {
@@ -124,7 +128,7 @@ fn solve<'a>(
         began,
     };
     run_all(&batch, "variant", request.progress, &mut |index, ended| {
-        ends.insert(todo[index].identity.as_str(), VariantEnd::new(ended));
+        ends.insert(todo[index].identity.as_str(), ended);
         Ok(None)
     })
 }
@@ -133,7 +137,7 @@ fn solve<'a>(
 fn write(
     request: &CommandInput,
     sweep: &Sweep,
-    ends: &[&VariantEnd],
+    ends: &[&Ended],
     folder: &Path,
 ) -> Result<(), CommandError> {
     let origin = request.origin(true);
@@ -144,53 +148,14 @@ fn write(
     Ok(atomic::write(&folder.join("report.html"), page.as_bytes())?)
 }
 
-/// Returns the numbers of variants by their ends.
-fn command_output(
-    shard: Shard,
-    sweep: &Sweep,
-    ends: &[&VariantEnd],
-    before: Before,
-    folder: &Path,
-    began: Instant,
-) -> CommandOutput {
-    let solved = ends.iter().filter(|end| end.ended.is_solved).count();
-    let mut words: BTreeMap<&str, usize> = BTreeMap::new();
-    for end in ends {
-        *words.entry(&end.ended.summary.status).or_default() += 1;
-    }
-    let words = words.iter().map(|(word, count)| format!("{count} {word}"));
-    let words: Vec<String> = words.collect();
-    let mut messages = BTreeSet::new();
-    let mut first_messages = Vec::new();
-    for (variant, end) in sweep.variants.iter().zip(ends) {
-        let message = end.ended.message.as_ref();
-        if let Some(message) = message.filter(|message| messages.insert(message.as_str())) {
-            first_messages.push(format!("{}: {message}", variant.set.join(", ")));
-        }
-    }
-    let mut notes = first(before.deviations);
-    notes.extend(first(first_messages));
-    let own = ends.iter().enumerate();
-    let mut own = own.filter(|(index, _)| shard.has(*index));
-    let is_complete = own.all(|(_, end)| !end.ended.summary.is_unfinished());
-    if stop::requested() {
-        notes.push("interrupted; the same command goes on".to_owned());
-    }
-    let before = match before.found {
-        0 => String::new(),
-        found => format!(", {found} found solved before"),
-    };
-    CommandOutput {
-        is_solved: solved > 0 && is_complete,
-        result: format!(
-            "{} variants: {}{before}, {:.1} s, {}",
-            ends.len(),
-            words.join(", "),
-            began.elapsed().as_secs_f64(),
-            folder.display()
-        ),
-        notes,
-    }
+/// The messages of variants, each of them once.
+fn messages(sweep: &Sweep, ends: &[&Ended]) -> Vec<String> {
+    let mut known = BTreeSet::new();
+    let each = sweep.variants.iter().zip(ends);
+    let each = each.filter_map(|(variant, end)| Some((variant, end.message.as_ref()?)));
+    let new = each.filter(|(_, message)| known.insert(*message));
+    let told = new.map(|(variant, message)| format!("{}: {message}", variant.set.join(", ")));
+    first(told.collect())
 }
 
 /// The first notes of one kind, and the number of further ones.

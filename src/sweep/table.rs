@@ -1,16 +1,22 @@
 //! The table of all variants, and `report.html`: scatter plot of two columns, parallel coordinates of the varied values and results, and all rows.
 
+use crate::app::Ended;
 use crate::files::si;
 use crate::report::origin::Origin;
 use crate::report::page::framed;
 use crate::sweep::read::{Sweep, Variant};
-use crate::sweep::variant_end::{END, VariantEnd};
-use serde_json::{Value, json};
+use csv::ReaderBuilder;
+use serde_json::{Map, Value, json};
+use std::path::Path;
+
+/// Begins the headings of numbers at the end of a motion, or at rest.
+const END: &str = "end: ";
 
 /// Headings and rows of cells; a cell without a value is empty.
-pub(super) fn table(sweep: &Sweep, ends: &[&VariantEnd]) -> Vec<Vec<String>> {
+pub(super) fn table(sweep: &Sweep, ends: &[&Ended]) -> Vec<Vec<String>> {
+    let numbers: Vec<_> = ends.iter().map(|end| numbers(end)).collect();
     let mut names: Vec<&String> = Vec::new();
-    for name in ends.iter().flat_map(|end| end.numbers.keys()) {
+    for name in numbers.iter().flat_map(Map::keys) {
         if !names.contains(&name) {
             names.push(name);
         }
@@ -26,15 +32,40 @@ pub(super) fn table(sweep: &Sweep, ends: &[&VariantEnd]) -> Vec<Vec<String>> {
     let rows = ends.iter().enumerate().map(|(row, end)| {
         let fixed = [
             sweep.variants[row].identity.clone(),
-            end.ended.summary.status.clone(),
-            format!("{:?}", end.ended.summary.seconds.total),
+            end.summary.status.clone(),
+            format!("{:?}", end.summary.seconds.total),
         ];
         let values = columns.iter().map(|column| column.cells[row].clone());
-        let numbers = names.iter().map(|&name| end.numbers.get(name));
+        let numbers = names.iter().map(|&name| numbers[row].get(name));
         let numbers = numbers.map(|number| number.map_or_else(String::new, cell));
         fixed.into_iter().chain(values).chain(numbers).collect()
     });
     [head].into_iter().chain(rows).collect()
+}
+
+/// Numbers of the results of a variant, by the headings of their columns.
+fn numbers(end: &Ended) -> Map<String, Value> {
+    let objective = end.summary.objective.map(Value::from);
+    let iterations = end.summary.iterations.map(Value::from);
+    let own = [("objective", objective), ("iterations", iterations)].into_iter();
+    let own = own.filter_map(|(name, value)| Some((name.to_owned(), value?)));
+    let tables = ["trajectory.csv", "equilibrium.csv"].into_iter();
+    let rows = tables.filter_map(|name| last_row(&end.folder.as_ref()?.join(name)));
+    own.chain(rows.flatten()).collect()
+}
+
+/// The numbers of the last row of a table, by their headings.
+fn last_row(table: &Path) -> Option<Vec<(String, Value)>> {
+    let reader = ReaderBuilder::new().comment(Some(b'#')).from_path(table);
+    let mut reader = reader.ok()?;
+    let headers = reader.headers().ok()?.clone();
+    let last = reader.records().last()?.ok()?;
+    let pairs = headers.iter().zip(&last);
+    let numbers = pairs.filter_map(|(name, cell)| {
+        let number: f64 = cell.parse().ok()?;
+        Some((format!("{END}{name}"), number.into()))
+    });
+    Some(numbers.collect())
 }
 
 /// Entry that varies at one place.
@@ -93,11 +124,11 @@ const MODULE: &str = include_str!("page.js");
 /// The page; `table` has a row of headings first.
 pub(super) fn html(
     sweep: &Sweep,
-    ends: &[&VariantEnd],
+    ends: &[&Ended],
     table: &[Vec<String>],
     origin: &Origin,
 ) -> String {
-    let solved: Vec<bool> = ends.iter().map(|end| end.ended.is_solved).collect();
+    let solved: Vec<bool> = ends.iter().map(|end| end.is_solved).collect();
     let count = solved.iter().filter(|&&is_solved| is_solved).count();
     let problem = sweep.problem.display();
     let data = json!({

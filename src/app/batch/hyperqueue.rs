@@ -6,18 +6,18 @@
 //!
 //! What is kept of a job until all its ends are collected is its name, and the folder of each of its tasks.
 
-use crate::app::batch::launch::{Batch, RunEnd, Said, of_status, words};
+use crate::app::batch::launch::{Batch, RunEnd, Told, words};
 use crate::app::error::CommandError;
 use crate::app::kept::record::{make_folder, parsed};
 use crate::app::request::CommandInput;
 use crate::report::atomic;
 use crate::report::atomic::WriteError;
+use crate::report::quoting;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::ffi::{OsStr, OsString};
 use std::io::ErrorKind;
-use std::ops::ControlFlow;
 use std::os::unix::process::CommandExt;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
@@ -31,10 +31,7 @@ const PATIENCE: Duration = Duration::from_millis(200);
 const SHARE: u32 = 10;
 
 /// Runs all of a batch.
-pub(super) fn run_all(
-    batch: &Batch<'_>,
-    told: &mut dyn FnMut(usize, RunEnd) -> ControlFlow<()>,
-) -> Result<(), CommandError> {
+pub(super) fn run_all(batch: &Batch<'_>, told: Told<'_>) -> Result<(), CommandError> {
     let mut open: BTreeMap<usize, &CommandInput> = batch.runs.iter().enumerate().collect();
     if let Some(job) = Job::earlier(batch.folder)? {
         follow(batch, &job, &mut open, told)?;
@@ -48,7 +45,7 @@ pub(super) fn run_all(
     }
     for index in open.into_keys() {
         // Nothing begins any more.
-        let _ = told(index, RunEnd::NOT_STARTED);
+        let _ = told(index, None);
     }
     Ok(())
 }
@@ -58,7 +55,7 @@ fn follow(
     batch: &Batch<'_>,
     job: &Job,
     open: &mut BTreeMap<usize, &CommandInput>,
-    told: &mut dyn FnMut(usize, RunEnd) -> ControlFlow<()>,
+    told: Told<'_>,
 ) -> Result<(), CommandError> {
     let mut left = job.tasks_of(open);
     let mut is_cancelled = false;
@@ -70,11 +67,11 @@ fn follow(
                 continue;
             };
             left.remove(&task.id);
-            let Some(end) = task.end(&job.standard_error(task.id)) else {
+            let Some(end) = task.end(&job.files) else {
                 continue;
             };
             open.remove(&index);
-            is_over |= told(index, end).is_break();
+            is_over |= told(index, Some(end)).is_break();
         }
         if is_over && !is_cancelled {
             job.cancel()?;
@@ -176,14 +173,9 @@ impl Job {
         tasks.ok_or_else(|| CommandError::Engine(format!("no tasks of the job {}", self.id)))
     }
 
-    /// The file of the standard error of a task.
-    fn standard_error(&self, task: usize) -> PathBuf {
-        self.files.join(format!("{task}.txt"))
-    }
-
     /// Ends what runs and begins nothing more.
     fn cancel(&self) -> Result<(), CommandError> {
-        tell(&["job", "cancel", &self.id])
+        successful(&["job", "cancel", &self.id]).map(drop)
     }
 
     /// Removes the record: all is collected.
@@ -202,18 +194,12 @@ fn whole(command: &CommandInput) -> Result<PathBuf, CommandError> {
 fn line(command: &CommandInput) -> Result<String, CommandError> {
     let program =
         std::env::current_exe().map_err(|cause| CommandError::Engine(cause.to_string()))?;
-    let mut quoted = Vec::new();
-    for word in [program.into_os_string()].into_iter().chain(words(command)) {
-        let word = word.into_string().ok().filter(|word| !word.contains('\n'));
-        let word = word.ok_or_else(|| {
-            CommandError::option(
-                "--engine hyperqueue",
-                "paths that are no UTF-8, or with line breaks, cannot be handed to it",
-            )
-        })?;
-        quoted.push(format!("'{}'", word.replace('\'', r"'\''")));
-    }
-    Ok(quoted.join(" "))
+    let words = [program.into_os_string()].into_iter().chain(words(command));
+    let words = words.map(|word| word.into_string().ok().filter(|word| !word.contains('\n')));
+    let refused = "paths that are no UTF-8, or with line breaks, cannot be handed to it";
+    let words: Option<Vec<String>> = words.collect();
+    let words = words.ok_or_else(|| CommandError::option("--engine hyperqueue", refused))?;
+    Ok(quoting::command(words))
 }
 
 /// Task as the server reports it.
@@ -233,18 +219,21 @@ impl Task {
         !matches!(self.state.as_str(), "waiting" | "running")
     }
 
-    /// Returns its end, with what it wrote to standard error in the file `standard_error`; none where it was cancelled.
-    fn end(&self, standard_error: &Path) -> Option<RunEnd> {
-        let words = fs::read_to_string(standard_error).unwrap_or_default();
-        let said = match (self.state.as_str(), self.exit_status()) {
-            ("finished", _) => Said::Solved,
-            ("failed", Some(status)) => of_status(Some(status), &words),
-            ("failed", None) => Said::Failed(self.error.clone().unwrap_or(words)),
+    /// Returns its end, with what it wrote to standard error in the folder of the files of its job; none where it was cancelled.
+    fn end(&self, files: &Path) -> Option<RunEnd> {
+        let words = fs::read_to_string(files.join(format!("{}.txt", self.id))).unwrap_or_default();
+        let (status, words) = match (self.state.as_str(), self.exit_status()) {
+            ("finished", _) => (Some(0), words),
+            ("failed", Some(status)) => (Some(status), words),
+            ("failed", None) => (None, self.error.clone().unwrap_or(words)),
             _ => return None,
         };
-        // The server does not tell them.
-        let seconds = 0.0;
-        Some(RunEnd { said, seconds })
+        Some(RunEnd {
+            status,
+            words,
+            // The server does not tell them.
+            seconds: 0.0,
+        })
     }
 
     /// The exit status that is in the words of the server; none where a signal ended it, or its worker was lost.
@@ -284,21 +273,19 @@ pub(super) fn check() -> Result<(), CommandError> {
 /// # Errors
 /// It does not, or not in JSON.
 fn ask(arguments: &[impl AsRef<OsStr>]) -> Result<Value, CommandError> {
-    let output = output(arguments).map_err(|cause| CommandError::Engine(cause.to_string()))?;
-    let answer = serde_json::from_slice(&output.stdout).ok();
-    answer
-        .filter(|_| output.status.success())
-        .ok_or_else(|| CommandError::Engine(message(&output)))
+    let output = successful(arguments)?;
+    let answer = serde_json::from_slice(&output.stdout);
+    answer.map_err(|_| CommandError::Engine(message(&output)))
 }
 
-/// Asks for what has no answer.
+/// Returns the output of a command that the server follows.
 ///
 /// # Errors
 /// The server refuses it, or there is none any more.
-fn tell(arguments: &[impl AsRef<OsStr>]) -> Result<(), CommandError> {
+fn successful(arguments: &[impl AsRef<OsStr>]) -> Result<Output, CommandError> {
     let output = output(arguments).map_err(|cause| CommandError::Engine(cause.to_string()))?;
     match output.status.success() {
-        true => Ok(()),
+        true => Ok(output),
         false => Err(CommandError::Engine(message(&output))),
     }
 }

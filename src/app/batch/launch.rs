@@ -17,6 +17,7 @@ use clap::ValueEnum;
 use serde::Serialize;
 use std::ffi::OsString;
 use std::fs::File;
+use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::time::Instant;
@@ -203,49 +204,19 @@ pub(crate) fn task_runs_at_once(loaded: &Loaded) -> bool {
     options.run_at_once()
 }
 
-/// The end of a solve.
-#[derive(Clone, Debug, PartialEq)]
-pub(super) enum Said {
-    /// There was no time for it.
-    NotStarted,
-    /// The question has an answer.
-    Solved,
-    /// Its files give the reason; where it left none, these words do.
-    Unsolved(String),
-    /// It broke off.
-    Failed(String),
-    /// The input is wrong.
-    Refused(String),
-}
-
-/// Returns the end of a process with a status and words on standard error; no status where a signal ended it.
-pub(super) fn of_status(status: Option<i32>, words: &str) -> Said {
-    let words = words.trim_end();
-    let words = words.strip_prefix("error: ").unwrap_or(words).to_owned();
-    match status {
-        Some(0) => Said::Solved,
-        Some(1) => Said::Unsolved(words),
-        Some(2) => Said::Refused(words),
-        _ => Said::Failed(words),
-    }
-}
-
-/// The end of a solve.
+/// The end of a solve, as of a process.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct RunEnd {
-    /// End, with the words of the solve.
-    pub(super) said: Said,
+    /// Exit status, see [`CommandError::exit_status`](crate::app::CommandError::exit_status); none where a signal or a panic ended it.
+    pub(super) status: Option<i32>,
+    /// Its words on standard error.
+    pub(super) words: String,
     /// Wall time in s.
     pub(super) seconds: f64,
 }
 
-impl RunEnd {
-    /// There was no time for it.
-    pub(super) const NOT_STARTED: Self = Self {
-        said: Said::NotStarted,
-        seconds: 0.0,
-    };
-}
+/// Takes the end of the solve with an index; none where there was no time for it.
+pub(super) type Told<'a> = &'a mut dyn FnMut(usize, Option<RunEnd>) -> ControlFlow<()>;
 
 /// A solve that has ended, with what it left in its folder.
 #[derive(Debug)]
@@ -262,18 +233,22 @@ pub(crate) struct Ended {
 
 impl Ended {
     /// One that ended like this in a folder.
-    pub(super) fn new(end: RunEnd, folder: &Path) -> Self {
-        let is_written = matches!(end.said, Said::Solved | Said::Unsolved(_));
-        let written = is_written.then(|| Self::of_folder(folder, end.said == Said::Solved));
+    pub(super) fn new(end: Option<RunEnd>, folder: &Path) -> Self {
+        let Some(end) = end else {
+            return Self::without_results("not_started", "", 0.0);
+        };
+        let is_written = matches!(end.status, Some(0 | 1));
+        let written = is_written.then(|| Self::of_folder(folder, end.status == Some(0)));
         if let Some(written) = written.flatten() {
             return written;
         }
-        let (status, message) = match end.said {
-            Said::NotStarted => ("not_started", String::new()),
-            Said::Refused(words) => ("refused", words),
-            _ if stop::requested() => ("interrupted", String::new()),
-            Said::Solved => ("failed", String::new()),
-            Said::Unsolved(words) | Said::Failed(words) => ("failed", words),
+        let words = end.words.trim_end();
+        let words = words.strip_prefix("error: ").unwrap_or(words);
+        let (status, message) = match end.status {
+            Some(2) => ("refused", words),
+            _ if stop::requested() => ("interrupted", ""),
+            Some(0) => ("failed", ""),
+            _ => ("failed", words),
         };
         Self::without_results(status, message, end.seconds)
     }
@@ -289,10 +264,10 @@ impl Ended {
     }
 
     /// One that left nothing.
-    pub(crate) fn without_results(status: &str, message: String, seconds: f64) -> Self {
+    pub(crate) fn without_results(status: &str, message: &str, seconds: f64) -> Self {
         Self {
             is_solved: false,
-            message: Some(message).filter(|words| !words.is_empty()),
+            message: (!message.is_empty()).then(|| message.to_owned()),
             summary: WrittenSummary {
                 status: status.to_owned(),
                 seconds: WrittenSeconds { total: seconds },

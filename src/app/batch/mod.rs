@@ -11,13 +11,13 @@ use crate::report::atomic::WriteError;
 use crate::stop;
 use crate::workflow::parallel_map::{cores, parallel_map};
 pub(crate) use launch::{Batch, Ended, task_runs_at_once};
-use launch::{RunEnd, Running, Said, launch, of_status};
+use launch::{RunEnd, Running, Told, launch};
 pub use launch::{RunIn, end_with_parent};
 #[cfg(unix)]
 use rustix::process::{Pid, Signal, kill_process};
 use std::io::{Read, Seek};
 use std::ops::ControlFlow;
-use std::process::{Child, ExitStatus};
+use std::process::Child;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -74,37 +74,34 @@ pub(crate) fn check_run_in(run_in: RunIn) -> Result<(), CommandError> {
 }
 
 /// Runs all of a batch in threads of this process, at most this number in parallel.
-fn run_in_threads(
-    batch: &Batch<'_>,
-    threads: usize,
-    told: &mut dyn FnMut(usize, RunEnd) -> ControlFlow<()>,
-) -> Result<(), CommandError> {
+fn run_in_threads(batch: &Batch<'_>, threads: usize, told: Told<'_>) -> Result<(), CommandError> {
     let is_over = AtomicBool::new(false);
     let solve = |run: &CommandInput| {
         let command = batch.command(run);
-        let Some(command) = command.filter(|_| !is_over.load(Ordering::Relaxed)) else {
-            return RunEnd::NOT_STARTED;
-        };
+        let command = command.filter(|_| !is_over.load(Ordering::Relaxed))?;
         let began = Instant::now();
         let answer = match run.once {
             true => run_once(&command),
             false => task::run_observed(&command, batch.text, &mut |_| {}),
         };
-        let said = match answer {
-            Ok(output) if output.is_solved => Said::Solved,
-            Ok(_) => Said::Unsolved(String::new()),
-            Err(error) => said(&error),
+        let (status, words) = match answer {
+            Ok(output) => (u8::from(!output.is_solved), String::new()),
+            Err(error) => (error.exit_status(), words(&error)),
         };
-        RunEnd {
-            said,
+        Some(RunEnd {
+            status: Some(status.into()),
+            words,
             seconds: began.elapsed().as_secs_f64(),
-        }
+        })
     };
     parallel_map(batch.runs, threads, solve, |index, answered| {
-        let end = answered.clone().unwrap_or_else(|panic| RunEnd {
-            said: Said::Failed(panic),
+        let broken_off = |words| RunEnd {
+            status: None,
+            words,
             seconds: 0.0,
-        });
+        };
+        let end = answered.clone();
+        let end = end.unwrap_or_else(|panic| Some(broken_off(panic)));
         if told(index, end).is_break() {
             is_over.store(true, Ordering::Relaxed);
         }
@@ -112,15 +109,10 @@ fn run_in_threads(
     Ok(())
 }
 
-fn said(error: &CommandError) -> Said {
-    let text = match error.excerpt() {
-        Some(excerpt) => format!("{error}\n{}", excerpt.trim_end()),
-        None => error.to_string(),
-    };
-    match error.exit_status() {
-        2 => Said::Refused(text),
-        _ => Said::Unsolved(text),
-    }
+/// The words of the program on an error.
+fn words(error: &CommandError) -> String {
+    let excerpt = error.excerpt().unwrap_or_default();
+    format!("{error}\n{excerpt}")
 }
 
 /// Time between two looks at the processes.
@@ -142,10 +134,7 @@ impl Drop for All {
 }
 
 /// Runs all of a batch in processes.
-fn run_in_processes(
-    batch: &Batch<'_>,
-    told: &mut dyn FnMut(usize, RunEnd) -> ControlFlow<()>,
-) -> Result<(), CommandError> {
+fn run_in_processes(batch: &Batch<'_>, told: Told<'_>) -> Result<(), CommandError> {
     let mut waiting = batch.runs.iter().enumerate().peekable();
     let mut running = All(Vec::new());
     let mut is_over = false;
@@ -160,7 +149,7 @@ fn run_in_processes(
                 break;
             };
             let Some(command) = batch.command(run).filter(|_| !is_over) else {
-                is_over |= told(index, RunEnd::NOT_STARTED).is_break();
+                is_over |= told(index, None).is_break();
                 continue;
             };
             let launched = launch(&command, index);
@@ -179,11 +168,15 @@ fn run_in_processes(
                 Ok(None) => place += 1,
                 Ok(Some(status)) => {
                     let mut done = running.0.swap_remove(place);
+                    let mut words = String::new();
+                    done.told.rewind().ok();
+                    done.told.read_to_string(&mut words).ok();
                     let end = RunEnd {
-                        said: end_of(&mut done, status),
+                        status: status.code(),
+                        words,
                         seconds: done.began.elapsed().as_secs_f64(),
                     };
-                    is_over |= told(done.index, end).is_break();
+                    is_over |= told(done.index, Some(end)).is_break();
                 }
                 Err(cause) => {
                     let path = batch.runs[running.0[place].index].folder();
@@ -206,12 +199,4 @@ fn ask_to_stop(child: &Child) {
     }
     #[cfg(not(unix))]
     let _ = child;
-}
-
-/// Returns the end of a process with a status.
-fn end_of(done: &mut Running, status: ExitStatus) -> Said {
-    let mut told = String::new();
-    done.told.rewind().ok();
-    done.told.read_to_string(&mut told).ok();
-    of_status(status.code(), &told)
 }

@@ -18,40 +18,28 @@ const NAME: &str = "record.json";
 
 /// The answer of a run that has come to its end, with its files as they were written.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct Record {
+struct Record {
     identity: String,
-    pub(crate) is_solved: bool,
-    result: String,
-    notes: Vec<String>,
+    #[serde(flatten)]
+    output: CommandOutput,
     files: FileRecords,
 }
 
-/// State of a result in a folder.
-#[derive(Debug)]
-pub(crate) enum Found {
-    /// All of it as it was written.
-    Whole(Record),
-    /// A file is not as it was written, in words.
-    Deviates(String),
-    /// Another result, or none.
-    Nothing,
-}
-
-/// The result of a run of this identity in a folder.
-pub(crate) fn found(folder: &Path, identity: &str) -> Found {
+/// The answer of a run of this identity, where a folder has all of its result; none where it has another one, or none.
+///
+/// # Errors
+/// A file is not as it was written, in words.
+pub(crate) fn found(folder: &Path, identity: &str) -> Result<Option<CommandOutput>, String> {
     let Ok(text) = fs::read_to_string(folder.join(NAME)) else {
-        return Found::Nothing;
+        return Ok(None);
     };
-    let Ok(record) = serde_json::from_str::<Record>(&text) else {
-        return Found::Deviates(format!("{NAME} is not as it was written"));
-    };
+    let record = serde_json::from_str::<Record>(&text);
+    let record = record.map_err(|_| format!("{NAME} is not as it was written"))?;
     if record.identity != identity {
-        return Found::Nothing;
+        return Ok(None);
     }
-    match record.files.deviation(folder) {
-        Some(words) => Found::Deviates(words),
-        None => Found::Whole(record),
-    }
+    let deviation = record.files.deviation(folder);
+    deviation.map_or(Ok(Some(record.output)), Err)
 }
 
 /// Does what a problem file asks for, unless the folder of the results holds the answer already; a result of which a file is missing or
@@ -63,17 +51,11 @@ pub fn run_once(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     let loaded = read(&request.input, None, &request.set)?;
     let identity = identity(&loaded, request);
     let folder = request.folder();
-    let deviation = match found(&folder, &identity) {
-        Found::Whole(record) => {
-            return Ok(CommandOutput {
-                is_solved: record.is_solved,
-                result: format!("found as it was written: {}", record.result),
-                notes: record.notes,
-            });
-        }
-        Found::Deviates(deviation) => Some(deviation),
-        Found::Nothing => None,
-    };
+    let before = found(&folder, &identity);
+    if let Ok(Some(output)) = before {
+        let result = format!("found as it was written: {}", output.result);
+        return Ok(CommandOutput { result, ..output });
+    }
     // That there is no answer is one.
     let answer = run(request).or_else(|error| {
         let status = error.unanswered().map(|word| word.replace('_', " "));
@@ -89,7 +71,7 @@ pub fn run_once(request: &CommandInput) -> Result<CommandOutput, CommandError> {
     if WrittenSummary::of_folder(&folder).is_some_and(|summary| !summary.is_unfinished()) {
         write(&folder, identity, &output)?;
     }
-    let again = deviation.map(|words| format!("made again: {words}"));
+    let again = before.err().map(|words| format!("made again: {words}"));
     output.notes.splice(0..0, again);
     Ok(output)
 }
@@ -100,9 +82,7 @@ fn write(folder: &Path, identity: String, output: &CommandOutput) -> Result<(), 
     let files = FileRecords::from_folder(folder, NAME).map_err(WriteError::at(&path))?;
     let record = Record {
         identity,
-        is_solved: output.is_solved,
-        result: output.result.clone(),
-        notes: output.notes.clone(),
+        output: output.clone(),
         files,
     };
     let text = serde_json::to_string(&record).expect("words and numbers are JSON");
