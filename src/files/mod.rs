@@ -57,7 +57,7 @@ pub(crate) use scene::build::LONGEST_CHAIN;
 pub use scene::material::named_materials;
 pub use scene::trunk::new_trunk;
 pub use typed::{driven_voltages, each_entry_once, each_once, read_system};
-pub(crate) use units::si;
+pub(crate) use units::{number_and_unit, si};
 
 /// A problem with its scene, read and checked.
 #[derive(Clone, Debug)]

@@ -9,7 +9,7 @@ use crate::app::{CommandInput, identity, identity_of_words, task_runs_at_once};
 use crate::files::changes::Changes;
 use crate::files::sweep::{CombineSpec, RangeSpec, SpacingSpec, SweepSpec, VarySpec};
 use crate::files::{
-    Columns, Document, SceneError, Scope, each_entry_once, each_once, read_problem,
+    Columns, Document, SceneError, Scope, each_entry_once, each_once, number_and_unit, read_problem,
 };
 use crate::math::{Random, refuse};
 
@@ -231,7 +231,7 @@ enum Values {
 /// A range of quantities of one unit.
 struct Range {
     ends: [f64; 2],
-    /// Text after the number, with its space; nothing for plain numbers.
+    /// None of plain numbers.
     unit: Option<String>,
     spacing: SpacingSpec,
     count: Option<usize>,
@@ -280,11 +280,10 @@ impl Values {
 impl Range {
     fn from_spec(written: &RangeSpec, scope: &Scope<'_>) -> Result<Self, SceneError> {
         let expected = "a number, or a text such as \"50 kPa\"";
-        let end = |name: &str, value: &Value| {
-            parts(value).ok_or_else(|| scope.key(name).wrong(value.to_string(), expected))
-        };
-        let (from, unit) = end("from", &written.from)?;
-        let (to, other) = end("to", &written.to)?;
+        let wrong = |name, value: &Value| scope.key(name).wrong(value.to_string(), expected);
+        let (from, to) = (&written.from, &written.to);
+        let (from, unit) = number_and_unit(from).ok_or_else(|| wrong("from", from))?;
+        let (to, other) = number_and_unit(to).ok_or_else(|| wrong("to", to))?;
         refuse!(if unit != other, scope.key("to");
             found written.to, expected "the unit of \"from\"");
         let is_logarithmic = written.spacing == SpacingSpec::Logarithmic;
@@ -296,7 +295,7 @@ impl Range {
             found count, expected format!("a number of values from 2 to {MOST}"));
         Ok(Self {
             ends: [from, to],
-            unit,
+            unit: unit.map(str::to_owned),
             spacing: written.spacing,
             count: written.count,
         })
@@ -312,21 +311,8 @@ impl Range {
             SpacingSpec::Logarithmic => from * (to / from).powf(part),
         };
         match &self.unit {
-            Some(unit) => json!(format!("{number}{unit}")),
+            Some(unit) => json!(format!("{number} {unit}")),
             None => json!(number),
         }
     }
-}
-
-/// Number and unit of a value.
-fn parts(value: &Value) -> Option<(f64, Option<String>)> {
-    if let Some(number) = value.as_f64() {
-        return Some((number, None));
-    }
-    let text = value.as_str()?;
-    let end = text.find(' ').unwrap_or(text.len());
-    let number: f64 = text[..end].parse().ok()?;
-    number
-        .is_finite()
-        .then(|| (number, Some(text[end..].to_owned())))
 }

@@ -28,6 +28,7 @@ use crate::files::problem::feedback::{CONTROL_FILE, DisturbanceSpec, ROUNDING};
 use crate::files::problem::identify::IdentifySpec;
 use crate::files::problem::simulation::refuse_given;
 use crate::files::study::ChangesSpec;
+use crate::files::units::number_and_unit;
 use crate::math::shortest;
 use crate::model::Parameter;
 use crate::model::system::{Source, System};
@@ -380,8 +381,8 @@ fn between(from: &Value, to: &Value, part: f64) -> Option<Value> {
             .then(|| each.collect::<Option<Vec<Value>>>())?
             .map(Value::Array);
     }
-    let (a, of_a) = quantity(from)?;
-    let (b, of_b) = quantity(to)?;
+    let (a, of_a) = number_and_unit(from)?;
+    let (b, of_b) = number_and_unit(to)?;
     let unit = match (of_a, of_b) {
         (Some(a), Some(b)) if a != b => return None,
         (None, Some(_)) if a != 0.0 => return None,
@@ -394,18 +395,6 @@ fn between(from: &Value, to: &Value, part: f64) -> Option<Value> {
     match unit {
         Some(unit) => Some(format!("{value} {unit}").into()),
         None => serde_json::Number::from_f64(value).map(Value::Number),
-    }
-}
-
-/// A number and its unit.
-fn quantity(value: &Value) -> Option<(f64, Option<&str>)> {
-    match value {
-        Value::Number(number) => Some((number.as_f64()?, None)),
-        Value::String(text) => {
-            let (number, unit) = text.trim().split_once(' ')?;
-            Some((number.parse().ok()?, Some(unit.trim())))
-        }
-        _ => None,
     }
 }
 

@@ -4,3 +4,4 @@ pub mod quantity;
 pub(crate) mod unit;
 
 pub(crate) use quantity::si;
+pub(crate) use unit::number_and_unit;

@@ -2,6 +2,7 @@
 //!
 //! A quantity is written as a number, or as a text of a number with a unit.
 
+use serde_json::Value;
 use std::f64::consts::PI;
 use std::fmt;
 
@@ -243,6 +244,16 @@ impl Written {
             },
         }
     }
+}
+
+/// Number and unit of a value, a number or a text such as `50 mm`, as they are written; no unit of a number.
+pub(crate) fn number_and_unit(value: &Value) -> Option<(f64, Option<&str>)> {
+    let Value::String(text) = value else {
+        return Some((value.as_f64()?, None));
+    };
+    let (number, unit) = split_number(text.trim_start());
+    let number: f64 = number.parse().ok()?;
+    number.is_finite().then(|| (number, Some(unit.trim())))
 }
 
 /// Number and unit of a text; the error names the value found instead.
