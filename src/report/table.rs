@@ -82,6 +82,42 @@ pub fn controls_csv(trajectory: &Trajectory, system: &System, origin: &Origin) -
     )
 }
 
+/// A cell of a table that is written to a file and shown as text: in full, and rounded.
+#[derive(Clone, Debug)]
+pub struct Cell {
+    full: String,
+    /// None of a column that is in the file alone.
+    shown: Option<String>,
+}
+
+impl Cell {
+    /// In full, and as it is shown.
+    pub fn new(full: impl ToString, shown: impl ToString) -> Self {
+        let (full, shown) = (full.to_string(), Some(shown.to_string()));
+        Self { full, shown }
+    }
+
+    /// Shown as it is in the file.
+    pub fn same(text: impl ToString) -> Self {
+        Self::new(text.to_string(), text)
+    }
+
+    /// Of a column that is in the file alone.
+    pub fn unshown(full: impl ToString) -> Self {
+        let (full, shown) = (full.to_string(), None);
+        Self { full, shown }
+    }
+}
+
+/// Rows of the cells in full, and of those that are shown.
+pub fn full_and_shown(rows: Vec<Vec<Cell>>) -> (Vec<Vec<String>>, Vec<Vec<String>>) {
+    let rows = rows.into_iter().map(|row| {
+        let (full, shown): (_, Vec<_>) = row.into_iter().map(|one| (one.full, one.shown)).unzip();
+        (full, shown.into_iter().flatten().collect())
+    });
+    rows.unzip()
+}
+
 /// Rows of text cells as CSV under a line that names the origin; the first row is the header.
 pub fn cells_csv(rows: &[Vec<String>], origin: &Origin) -> String {
     csv_under(&origin.line(), rows.iter().cloned())

@@ -86,29 +86,20 @@ pub(super) struct FileRecords(BTreeMap<String, FileRecord>);
 impl FileRecords {
     /// The files that a folder has now, without a `record` of them and unfinished files.
     pub(super) fn from_folder(folder: &Path, record: &str) -> io::Result<Self> {
-        let mut files = Self::default();
-        files.read(folder, "")?;
-        files.0.remove(record);
-        Ok(files)
-    }
-
-    fn read(&mut self, folder: &Path, within: &str) -> io::Result<()> {
-        for entry in fs::read_dir(folder)? {
-            let path = entry?.path();
+        let mut files = BTreeMap::new();
+        for path in files_within(folder)? {
             let name = path.file_name().unwrap_or_default().to_string_lossy();
-            let place = format!("{within}{name}");
-            if path.is_dir() {
-                self.read(&path, &format!("{place}/"))?;
-            } else if !name.starts_with('.') {
-                let bytes = fs::read(&path)?;
-                let record = FileRecord {
-                    bytes: bytes.len() as u64,
-                    sha256: digest_of(&bytes),
-                };
-                self.0.insert(place, record);
+            if name.starts_with('.') || path == Path::new(record) {
+                continue;
             }
+            let bytes = fs::read(folder.join(&path))?;
+            let record = FileRecord {
+                bytes: bytes.len() as u64,
+                sha256: digest_of(&bytes),
+            };
+            files.insert(path.to_string_lossy().into_owned(), record);
         }
-        Ok(())
+        Ok(Self(files))
     }
 
     /// The first file that is not as it was written, in words.
@@ -130,6 +121,20 @@ impl FileRecords {
             }
         })
     }
+}
+
+/// The paths within a folder of its files and of those in its folders.
+pub(in crate::app) fn files_within(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    let mut files = Vec::new();
+    for entry in fs::read_dir(folder)? {
+        let path = entry?.path();
+        let name = PathBuf::from(path.file_name().unwrap_or_default());
+        match path.is_dir() {
+            true => files.extend(files_within(&path)?.iter().map(|inner| name.join(inner))),
+            false => files.push(name),
+        }
+    }
+    Ok(files)
 }
 
 /// Hexadecimal digits of the hash of a formatted text.

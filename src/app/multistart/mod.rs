@@ -6,7 +6,7 @@
 
 use crate::app::batch::{Batch, Ended, RunIn, run_all, task_runs_at_once};
 use crate::app::error::CommandError;
-use crate::app::kept::record::{WrittenSummary, make_folder, make_folder_of, parsed};
+use crate::app::kept::record::{WrittenSummary, files_within, make_folder, make_folder_of, parsed};
 use crate::app::request::{CommandInput, CommandOutput, key};
 use crate::app::summary::keep_unanswered;
 use crate::app::task::{read, refuse_replacing};
@@ -15,15 +15,13 @@ use crate::files::{Entries, Loaded, is_standard_input, printable};
 use crate::math::significant;
 use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
-use crate::report::table::{aligned, cells_csv};
+use crate::report::table::{Cell, aligned, cells_csv, full_and_shown};
 use crate::stop;
 use crate::workflow::program::resolve_each;
 use rank::Rank;
 use serde::Deserialize;
-use std::collections::BTreeMap;
-use std::fmt::Debug;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -60,11 +58,12 @@ pub fn solve_from_starts(
     let folder = make_folder_of(request)?;
     remove_older(&folder.join(FOLDER));
     make_folder(&folder.join(FOLDER))?;
-    let plan = plan(starts, seed);
-    let runs: Vec<CommandInput> = plan
-        .iter()
-        .map(|start| start.run(request, &folder, &places))
-        .collect();
+    let seed_of = |number: usize| {
+        let first = seed.wrapping_mul(MOST as u64);
+        (number > 1).then(|| first.wrapping_add(number as u64))
+    };
+    let start = |number| run(request, &folder, number, seed_of(number), &places);
+    let runs: Vec<CommandInput> = (1..=starts).map(start).collect();
     let batch = Batch {
         runs: &runs,
         text,
@@ -75,10 +74,11 @@ pub fn solve_from_starts(
     };
     let mut ended: Vec<StartEnd> = Vec::new();
     run_all(&batch, "start", request.progress, &mut |index, one| {
-        ended.push(StartEnd::new(plan[index], one, &folder)?);
+        let number = index + 1;
+        ended.push(StartEnd::new(number, seed_of(number), one, &folder)?);
         Ok(best(&ended).and_then(|i| ended[i].objective()))
     })?;
-    ended.sort_by_key(|one| one.start.number);
+    ended.sort_by_key(|one| one.number);
     let distinct = number_optima(&mut ended);
     write(request, &batch, &ended, distinct)
 }
@@ -116,17 +116,6 @@ fn check_problem(request: &CommandInput, loaded: &Loaded) -> Result<Vec<String>,
     Ok(task.motions.iter().enumerate().map(place).collect())
 }
 
-/// The starts: the guess of the problem, then random ones.
-fn plan(starts: usize, seed: u64) -> Vec<Start> {
-    let seed_of = |start: usize| seed.wrapping_mul(MOST as u64).wrapping_add(start as u64);
-    (1..=starts)
-        .map(|number| Start {
-            number,
-            seed: (number > 1).then(|| seed_of(number)),
-        })
-        .collect()
-}
-
 /// Starts of an earlier command.
 fn remove_older(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
@@ -150,7 +139,8 @@ fn write(
 ) -> Result<CommandOutput, CommandError> {
     let folder = &*request.folder();
     let origin = request.origin(true);
-    let csv = cells_csv(&cells(ended), &origin);
+    let (full, shown) = full_and_shown(table(ended));
+    let csv = cells_csv(&full, &origin);
     atomic::write(&folder.join("starts.csv"), csv.as_bytes())?;
     // Of the starts that found the best optimum the first, whatever the last digits say.
     let first = ended.iter().find(|one| one.optimum == Some(1));
@@ -164,12 +154,12 @@ fn write(
         .with("solved", solved)
         .with("distinct_optima", distinct)
         // The start whose files these are.
-        .with("best", best.map(|one| one.start.number))
+        .with("best", best.map(|one| one.number))
         // Wall time of all of them.
         .with("seconds", seconds)
         .with_each("each", ended.iter().map(StartEnd::entries));
     if let Some(best) = best {
-        copy(&folder_of(folder, best.start.number), folder, &section)?;
+        copy(&folder_of(folder, best.number), folder, &section)?;
     }
     let is_stopped = stop::requested();
     let is_solved = solved > 0 && !is_stopped;
@@ -195,7 +185,7 @@ fn write(
     notes.extend(best.and_then(|best| lower(best, ended)));
     for one in ended {
         let told = one.ended.message.as_deref().map(printable);
-        let number = one.start.number;
+        let number = one.number;
         notes.extend(told.map(|message| format!("start {number} failed: {message}")));
     }
     if is_stopped {
@@ -203,7 +193,7 @@ fn write(
     }
     Ok(CommandOutput {
         is_solved,
-        result: format!("{head}\n{}", aligned(&rows(ended))),
+        result: format!("{head}\n{}", aligned(&shown)),
         notes,
     })
 }
@@ -214,7 +204,7 @@ fn lower(best: &StartEnd, ended: &[StartEnd]) -> Option<String> {
     let others = ended
         .iter()
         .filter(|one| one.ended.is_solved && !one.is_held);
-    let mut lower = others.filter_map(|one| Some((one.start.number, one.objective()?)));
+    let mut lower = others.filter_map(|one| Some((one.number, one.objective()?)));
     let (start, other) = lower.find(|(_, other)| best.is_held && *other < objective)?;
     Some(format!(
         "note: start {start} has the lower objective {}, but does not keep its goal or period",
@@ -222,101 +212,54 @@ fn lower(best: &StartEnd, ended: &[StartEnd]) -> Option<String> {
     ))
 }
 
-const COLUMNS: [&str; 7] = [
-    "start",
-    "guess",
-    "status",
-    "objective",
-    "iterations",
-    "seconds",
-    "optimum",
-];
-
-/// The table as text for people.
-fn rows(ended: &[StartEnd]) -> Vec<Vec<String>> {
-    let or_dash = |text: Option<String>| text.unwrap_or_else(|| "-".to_owned());
-    let row = |one: &StartEnd| {
-        vec![
-            one.start.number.to_string(),
-            one.start
-                .seed
-                .map_or("own".to_owned(), |seed| format!("seed {seed}")),
-            one.ended.summary.status.replace('_', " "),
-            or_dash(one.objective().map(|value| significant(value, 8))),
-            or_dash(one.ended.summary.iterations.map(|count| count.to_string())),
-            format!("{:.2}", one.ended.summary.seconds.total),
-            or_dash(one.optimum.map(|number| number.to_string())),
-        ]
-    };
-    let head = COLUMNS.map(str::to_owned).to_vec();
-    [head].into_iter().chain(ended.iter().map(row)).collect()
-}
-
-/// The table as `starts.csv`; cells without a value are empty.
-fn cells(ended: &[StartEnd]) -> Vec<Vec<String>> {
-    let header = [
-        "start",
-        "seed",
-        "status",
-        "objective",
-        "iterations",
-        "seconds [s]",
-        "optimum",
+/// The table of all starts; cells of `starts.csv` without a value are empty.
+fn table(ended: &[StartEnd]) -> Vec<Vec<Cell>> {
+    let header = vec![
+        Cell::same("start"),
+        Cell::new("seed", "guess"),
+        Cell::same("status"),
+        Cell::same("objective"),
+        Cell::same("iterations"),
+        Cell::new("seconds [s]", "seconds"),
+        Cell::same("optimum"),
     ];
-    fn cell(value: Option<impl Debug>) -> String {
-        value.map_or_else(String::new, |value| format!("{value:?}"))
-    }
+    let none = || Cell::new("", "-");
     let row = |one: &StartEnd| {
         let summary = &one.ended.summary;
+        let guess = |seed| Cell::new(seed, format!("seed {seed}"));
+        let objective = |value| Cell::new(format!("{value:?}"), significant(value, 8));
+        let seconds = summary.seconds.total;
         vec![
-            one.start.number.to_string(),
-            cell(one.start.seed),
-            summary.status.clone(),
-            cell(one.objective()),
-            cell(summary.iterations),
-            cell(Some(summary.seconds.total)),
-            cell(one.optimum),
+            Cell::same(one.number),
+            one.seed.map_or_else(|| Cell::new("", "own"), guess),
+            Cell::new(&summary.status, summary.status.replace('_', " ")),
+            summary.objective.map_or_else(none, objective),
+            summary.iterations.map_or_else(none, Cell::same),
+            Cell::new(format!("{seconds:?}"), format!("{seconds:.2}")),
+            one.optimum.map_or_else(none, Cell::same),
         ]
     };
-    let header = header.map(str::to_owned).to_vec();
     [header].into_iter().chain(ended.iter().map(row)).collect()
 }
 
 /// Copies the files of a start, its summary last and with the table of all.
 fn copy(from: &Path, to: &Path, section: &Entries) -> Result<(), WriteError> {
+    let names = files_within(from).map_err(WriteError::at(from))?;
+    let folders: BTreeSet<_> = names.iter().filter_map(|name| name.parent()).collect();
+    for folder in folders {
+        make_folder(&to.join(folder))?;
+    }
     let mut files = FileSet::in_folder(to);
-    copy_folder(from, "", to, &mut files)?;
-    let path = from.join("summary.json");
-    let summary = match fs::read_to_string(&path) {
-        Err(cause) if cause.kind() == ErrorKind::NotFound => "{}".to_owned(),
-        read => read.map_err(WriteError::at(path))?,
-    };
-    files.add("summary.json", with_section(&summary, section).as_bytes())?;
-    files.finish()
-}
-
-/// Copies all files of a folder but the summary, and those of its folders.
-fn copy_folder(
-    from: &Path,
-    within: &str,
-    to: &Path,
-    files: &mut FileSet,
-) -> Result<(), WriteError> {
-    for entry in fs::read_dir(from).map_err(WriteError::at(from))? {
-        let path = entry.map_err(WriteError::at(from))?.path();
-        let Some(name) = path.file_name() else {
-            continue;
-        };
-        let name = Path::new(within).join(name);
-        if path.is_dir() {
-            make_folder(&to.join(&name))?;
-            copy_folder(&path, &name.to_string_lossy(), to, files)?;
-        } else if name != Path::new("summary.json") {
-            let bytes = fs::read(&path).map_err(WriteError::at(&path))?;
-            files.add(name, &bytes)?;
+    let mut summary = "{}".to_owned();
+    for name in &names {
+        let path = from.join(name);
+        match name == Path::new("summary.json") {
+            true => summary = fs::read_to_string(&path).map_err(WriteError::at(path))?,
+            false => files.add(name, &fs::read(&path).map_err(WriteError::at(path))?)?,
         }
     }
-    Ok(())
+    files.add("summary.json", with_section(&summary, section).as_bytes())?;
+    files.finish()
 }
 
 /// A summary with the section of the starts at its end.
@@ -345,36 +288,34 @@ fn folder_of(folder: &Path, start: usize) -> PathBuf {
     folder.join(FOLDER).join(format!("{start:02}"))
 }
 
-/// A starting point of a plan.
-#[derive(Clone, Copy, Debug)]
-struct Start {
-    /// Its number, from 1.
+/// The solve of a start, from 1, of a problem whose guesses stand at these `places`.
+///
+/// All guesses have one seed, so that inputs which motions share begin alike.
+fn run(
+    request: &CommandInput,
+    folder: &Path,
     number: usize,
-    /// Seed of a random guess; none for the guess of the problem itself.
     seed: Option<u64>,
-}
-
-impl Start {
-    /// Its solve, of a problem whose guesses stand at these `places`.
-    ///
-    /// All guesses have one seed, so that inputs which motions share begin alike.
-    fn run(self, request: &CommandInput, folder: &Path, places: &[String]) -> CommandInput {
-        let mut run = CommandInput {
-            output: Some(folder_of(folder, self.number)),
-            ..request.clone()
-        };
-        if let Some(seed) = self.seed {
-            let guess = |place| format!("{place}={{\"random\":{{\"seed\":{seed}}}}}");
-            run.set.extend(places.iter().map(guess));
-        }
-        run
+    places: &[String],
+) -> CommandInput {
+    let mut run = CommandInput {
+        output: Some(folder_of(folder, number)),
+        ..request.clone()
+    };
+    if let Some(seed) = seed {
+        let guess = |place| format!("{place}={{\"random\":{{\"seed\":{seed}}}}}");
+        run.set.extend(places.iter().map(guess));
     }
+    run
 }
 
 /// End of one start.
 #[derive(Debug)]
 struct StartEnd {
-    start: Start,
+    /// Its number, from 1.
+    number: usize,
+    /// Seed of a random guess; none for the guess of the problem itself.
+    seed: Option<u64>,
     ended: Ended,
     /// Number of the optimum it found, from 1 for the best.
     optimum: Option<usize>,
@@ -396,15 +337,20 @@ impl StartEnd {
     ///
     /// # Errors
     /// It says that the input is wrong.
-    fn new(start: Start, ended: Ended, folder: &Path) -> Result<Self, CommandError> {
+    fn new(
+        number: usize,
+        seed: Option<u64>,
+        ended: Ended,
+        folder: &Path,
+    ) -> Result<Self, CommandError> {
         let summary = &ended.summary;
         if summary.status == "refused" {
             return Err(CommandError::Start {
-                start: start.number,
+                start: number,
                 message: ended.message.unwrap_or_default(),
             });
         }
-        let path = folder_of(folder, start.number);
+        let path = folder_of(folder, number);
         let own = summary.motions.iter().map(|one| path.join(&one.folder));
         let mut folders: Vec<PathBuf> = own.collect();
         let mut remarks = vec![(None, summary.notes.clone())];
@@ -430,7 +376,8 @@ impl StartEnd {
             is_held: !all.any(|one| LEAVES.contains(&&*one.code)),
             voltages: voltages.collect(),
             notes: notes.collect(),
-            start,
+            number,
+            seed,
             ended,
         })
     }
@@ -444,8 +391,8 @@ impl StartEnd {
     fn entries(&self) -> Entries {
         let summary = &self.ended.summary;
         Entries::default()
-            .with("start", self.start.number)
-            .with("seed", self.start.seed)
+            .with("start", self.number)
+            .with("seed", self.seed)
             .with("status", &summary.status)
             .with_some("message", self.ended.message.as_ref())
             .with("objective", summary.objective)
