@@ -3,7 +3,7 @@
 use crate::study::limit::{SequenceLimit, distance, limit, observed_order};
 use crate::study::measure::{StudyMeasure, Unit};
 use crate::study::outcome::Observed;
-use crate::study::read::{Reference, Study};
+use crate::study::read::Study;
 use crate::study::schedule::{Done, Results};
 
 /// Two instants are the same where they differ by less, as parts of the duration.
@@ -29,7 +29,7 @@ pub struct MethodErrors {
     pub errors: Vec<Option<f64>>,
     /// Errors that are no larger are not known, as the limit is no better known.
     pub floor: f64,
-    /// Values, where there is something to compare.
+    /// Values; those of a measure that is an error by itself are its errors.
     pub values: Vec<Option<Vec<f64>>>,
     /// Order that the errors show.
     pub order: Option<f64>,
@@ -50,32 +50,24 @@ impl MethodErrors {
 impl Judged {
     /// Limits that points are compared with, with the names of the methods that they are of.
     pub(super) fn limits<'s>(&'s self, study: &'s Study) -> Vec<(&'s str, &'s SequenceLimit)> {
-        let of_own = self.methods.iter().zip(&study.methods);
-        let of_own = of_own.map(|(errors, method)| (method, &errors.limit));
-        let limits: Vec<_> = match study.reference {
-            Reference::Own => of_own.collect(),
-            Reference::Of { method, .. } => {
-                vec![(&study.methods[method], &self.methods[0].limit)]
-            }
+        let of = |method: usize, errors: usize| {
+            let limit = self.methods[errors].limit.as_ref()?;
+            Some((study.methods[method].name.as_str(), limit))
         };
-        let known = limits.into_iter();
-        known
-            .filter_map(|(method, limit)| Some((method.name.as_str(), limit.as_ref()?)))
-            .collect()
+        match study.reference {
+            None => (0..study.methods.len()).filter_map(|m| of(m, m)).collect(),
+            Some(method) => of(method, 0).into_iter().collect(),
+        }
     }
 }
 
 /// Judges all points of a study by all its measures.
 pub fn judge(results: &Results<'_>) -> Vec<Judged> {
-    let instants = common(results);
     let measures = results.study.measures.iter();
     let judged = measures.map(|&measure| Judged {
         measure,
         scale: scale(results, measure),
-        methods: match measure.has_reference() {
-            true => against(results, measure, &instants),
-            false => alone(results, measure),
-        },
+        methods: methods(results, measure),
     });
     judged.collect()
 }
@@ -114,23 +106,24 @@ fn value(seen: &Observed, measure: StudyMeasure, instants: &[f64]) -> Option<Vec
     }
 }
 
-/// Values against their limit, or that of the reference.
-fn against(results: &Results<'_>, measure: StudyMeasure, instants: &[f64]) -> Vec<MethodErrors> {
+/// A measure of each method: values against their limit, or that of the reference; or errors by themselves.
+fn methods(results: &Results<'_>, measure: StudyMeasure) -> Vec<MethodErrors> {
+    let instants = common(results);
     let width = measure.width();
-    let of = |done: &Done<'_>| value(done.seen.as_ref()?, measure, instants);
+    let is_against = measure.has_reference();
+    let of = |done: &Done<'_>| value(done.seen.as_ref()?, measure, &instants);
     let limit_of = |points: &[Done<'_>]| {
         let whole = points.iter().filter(|done| done.halved() == 0);
         let there = whole.filter_map(|done| Some((done.point.size, of(done)?)));
         let (sizes, values): (Vec<_>, Vec<_>) = there.unzip();
-        limit(&sizes, &values, width)
+        limit(&sizes, &values, width).filter(|_| is_against)
     };
-    let shared = match &results.study.reference {
-        Reference::Own => None,
-        Reference::Of { method, points } if points.is_empty() => {
-            Some(limit_of(&results.methods[*method]))
-        }
-        Reference::Of { .. } => Some(limit_of(&results.reference)),
-    };
+    let shared = results.study.reference.map(|method| {
+        limit_of(match results.reference.is_empty() {
+            true => &results.methods[method],
+            false => &results.reference,
+        })
+    });
     let of_method = |points: &Vec<Done<'_>>| {
         let limit = shared.clone().unwrap_or_else(|| limit_of(points));
         let relative = match (measure, &limit) {
@@ -139,34 +132,19 @@ fn against(results: &Results<'_>, measure: StudyMeasure, instants: &[f64]) -> Ve
         };
         // A single value tells nothing of its own error.
         let known = limit.as_ref().filter(|limit| limit.floor().is_finite());
-        let error = |value: &Option<Vec<f64>>| {
-            Some(distance(value.as_ref()?, &known?.value, width) / relative)
+        let error = |value: &Option<Vec<f64>>| match is_against {
+            true => Some(distance(value.as_ref()?, &known?.value, width) / relative),
+            false => Some(value.as_ref()?[0]),
         };
         let values: Vec<_> = points.iter().map(of).collect();
         let errors: Vec<_> = values.iter().map(error).collect();
         let floor = known.map_or(0.0, |limit| limit.floor() / relative);
         MethodErrors {
-            order: order(points, &errors, floor),
+            order: order(points, &errors, floor).filter(|_| measure.has_order()),
             errors,
             floor,
             values,
             limit,
-        }
-    };
-    results.methods.iter().map(of_method).collect()
-}
-
-/// A measure that is an error by itself.
-fn alone(results: &Results<'_>, measure: StudyMeasure) -> Vec<MethodErrors> {
-    let error = |done: &Done<'_>| done.seen.as_ref()?.numbers.get(&measure).copied();
-    let of_method = |points: &Vec<Done<'_>>| {
-        let errors: Vec<_> = points.iter().map(error).collect();
-        MethodErrors {
-            limit: None,
-            order: order(points, &errors, 0.0).filter(|_| measure.has_order()),
-            floor: 0.0,
-            values: vec![None; points.len()],
-            errors,
         }
     };
     results.methods.iter().map(of_method).collect()

@@ -78,7 +78,7 @@ pub fn cost_table(results: &Results<'_>, judged: &[Judged]) -> String {
             let errors = (0..own.errors.len()).filter_map(|k| own.surely(k));
             let least = errors.reduce(f64::min);
             let least = least.map(|error| error_text(judged.measure.unit(), error));
-            let mut row = vec![judged.measure.key().replace('_', " "), method.name.clone()];
+            let mut row = vec![judged.measure.name(), method.name.clone()];
             let cells = [order]
                 .into_iter()
                 .chain(costs.iter().map(cost))

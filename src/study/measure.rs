@@ -1,6 +1,7 @@
 //! Measures of a point: their names and units, and the points that have them.
 
 use serde::Serialize;
+use std::fmt;
 
 use crate::control::problem::Task;
 use crate::files::Loaded;
@@ -58,6 +59,13 @@ impl Unit {
     }
 }
 
+impl fmt::Display for StudyMeasure {
+    /// The word in files.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.serialize(f)
+    }
+}
+
 impl StudyMeasure {
     /// All of them, in the order of tables and pages.
     pub const ALL: [Self; 10] = [
@@ -73,25 +81,14 @@ impl StudyMeasure {
         Self::Infeasibility,
     ];
 
-    /// Word in files.
-    pub fn key(self) -> &'static str {
-        match self {
-            Self::End => "end",
-            Self::Path => "path",
-            Self::Place => "place",
-            Self::Objective => "objective",
-            Self::ResimulatedEnd => "resimulated_end",
-            Self::ResimulatedPath => "resimulated_path",
-            Self::EnergyBalance => "energy_balance",
-            Self::EnergyDrift => "energy_drift",
-            Self::ConstraintViolation => "constraint_violation",
-            Self::Infeasibility => "infeasibility",
-        }
+    /// Name in tables.
+    pub fn name(self) -> String {
+        self.to_string().replace('_', " ")
     }
 
     /// Head of a column.
     pub fn head(self) -> String {
-        format!("{}{}", self.key().replace('_', " "), self.unit().suffix())
+        format!("{}{}", self.name(), self.unit().suffix())
     }
 
     /// Label of an axis, without the unit.

@@ -21,6 +21,7 @@ use std::path::Path;
 use std::time::Instant;
 
 use crate::app::{CommandError, CommandInput, CommandOutput, make_folder};
+use crate::report::table::{aligned, cells_csv, full_and_shown};
 use crate::report::{PageContent, atomic, page::html};
 use crate::study::compare::{Judged, judge, moved_marker};
 use crate::study::costs::{conclusion, cost_table};
@@ -79,7 +80,7 @@ fn write(
     let put = |name: &str, text: &str| atomic::write(&folder.join(name), text.as_bytes());
     let (mut figures, mut plots) = (Vec::new(), Vec::new());
     for judged in judged {
-        let name = format!("{}.svg", judged.measure.key());
+        let name = format!("{}.svg", judged.measure);
         let plot = page::plot_diagram(results, judged);
         if let Some(plot) = &plot {
             put(&name, &plot.svg(&origin))?;
@@ -88,10 +89,11 @@ fn write(
         let title = judged.measure.label().to_owned();
         plots.extend(plot.map(|plot| (title, plot)));
     }
-    let (points, costs) = (table::text(results, judged), cost_table(results, judged));
+    let (full, shown) = full_and_shown(table::table(results, judged));
+    let (points, costs) = (aligned(&shown), cost_table(results, judged));
     let text = format!("{points}\n{costs}");
     put("table.txt", &text)?;
-    put("table.csv", &table::csv(results, judged, &origin))?;
+    put("table.csv", &cells_csv(&full, &origin))?;
     let page = page::markdown(results, judged, &figures, said, &points, &origin);
     put("study.md", &page)?;
     let [solved, all] = results.solved();

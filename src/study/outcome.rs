@@ -52,7 +52,7 @@ pub struct Observed {
 }
 
 /// The status of a run that Ctrl-C ended.
-pub const INTERRUPTED: &str = "interrupted";
+const INTERRUPTED: &str = "interrupted";
 
 /// Outcome of a run, and what was observed of its answer.
 pub type Ran = (RunOutcome, Option<Observed>);
@@ -60,7 +60,7 @@ pub type Ran = (RunOutcome, Option<Observed>);
 /// Status and message of a run without an answer.
 type NoAnswer = (&'static str, String);
 
-/// Runs a point once; where `markers` are named, its answer is observed after the clock has stopped.
+/// Runs a point once, unless Ctrl-C was pressed before; where `markers` are named, its answer is observed after the clock has stopped.
 pub fn run(point: &StudyPoint, markers: Option<&[String]>) -> Ran {
     let run = Run {
         point,
@@ -68,11 +68,11 @@ pub fn run(point: &StudyPoint, markers: Option<&[String]>) -> Ran {
         began: Instant::now(),
     };
     let found = match &point.loaded.task {
+        _ if stop::requested() => Ok((run.outcome(INTERRUPTED, None, false), None)),
         Task::Control(task) => run.control(task),
-        Task::Motions(_) => unreachable!("refused where the study is read"),
         Task::Simulate(task) => run.motion(task),
         Task::Equilibrium(task) => run.rest(task),
-        Task::Identify(_) => unreachable!("studies have no identifications"),
+        Task::Motions(_) | Task::Identify(_) => unreachable!("refused where the study is read"),
     };
     let none = |(status, message)| (run.outcome(status, Some(message), false), None);
     found.unwrap_or_else(none)

@@ -4,7 +4,7 @@ use crate::app::without_dots;
 use crate::control::problem::{Duration, Task};
 use crate::files::changes::Changes;
 use crate::files::study::{MethodSpec, ReferenceSpec, RefineSpec, StudySpec};
-use crate::files::{Document, Loaded, SceneError, Scope, read_problem};
+use crate::files::{Document, Loaded, SceneError, Scope, number_and_unit, read_problem};
 use crate::math::refuse;
 use crate::study::measure::{self, StudyMeasure, StudyTask};
 use serde_json::Value;
@@ -26,8 +26,10 @@ pub struct Study {
     pub asked: StudyTask,
     /// The methods that are compared, in their order.
     pub methods: Vec<Method>,
-    /// Reference of errors.
-    pub reference: Reference,
+    /// Index of the method against whose limit errors are measured; none where each method has its own limit.
+    pub reference: Option<usize>,
+    /// Points of that method that are run for the reference alone; where there are none, its points in the study are the reference.
+    pub of_reference: Vec<StudyPoint>,
     /// Names of the markers whose places are compared.
     pub markers: Vec<String>,
     /// Quantities that are measured.
@@ -62,20 +64,6 @@ pub struct StudyPoint {
     pub loaded: Loaded,
 }
 
-/// Reference of errors.
-#[derive(Debug)]
-pub enum Reference {
-    /// Each method against its own limit.
-    Own,
-    /// All against the limit of one.
-    Of {
-        /// Index of the method.
-        method: usize,
-        /// Its points that are run for this alone; where there are none, its points in the study.
-        points: Vec<StudyPoint>,
-    },
-}
-
 /// Reads a study and all problems it asks for.
 ///
 /// # Errors
@@ -92,11 +80,11 @@ pub fn read_study(path: &Path) -> Result<Study, SceneError> {
     let methods = (0..spec.methods.len())
         .map(|index| method(&spec, index, &scope))
         .collect::<Result<Vec<_>, _>>()?;
-    let reference = match &spec.reference {
+    let (reference, of_reference) = match &spec.reference {
         None => own(&methods, &scope)?,
-        Some(reference) => of_one(&spec, reference, &methods, &scope.key("reference"))?,
+        Some(reference) => of_one(&spec, reference, &methods, &scope)?,
     };
-    let asked = same_question(&methods, &reference, &scope)?;
+    let asked = same_question(&methods, &of_reference, &scope)?;
     Ok(Study {
         markers: markers(&spec, &methods, &scope)?,
         measures: measures(&spec, asked, &methods, &scope)?,
@@ -106,6 +94,7 @@ pub fn read_study(path: &Path) -> Result<Study, SceneError> {
         asked,
         methods,
         reference,
+        of_reference,
     })
 }
 
@@ -161,54 +150,56 @@ fn points(
     each.map(|(k, of)| point(k, of)).collect()
 }
 
+/// The method against whose limit errors are measured, and its points for this alone.
+type Reference = (Option<usize>, Vec<StudyPoint>);
+
+/// Each method against its own limit.
 fn own(methods: &[Method], scope: &Scope<'_>) -> Result<Reference, SceneError> {
     let few = |method: &Method| method.points.len() < POINTS;
     refuse!(if let Some(index) = methods.iter().position(few), scope.key("methods").index(index);
         found format!("{} points", methods[index].points.len()),
         expected format!("{POINTS} or more, from which a limit is extrapolated, or a \"reference\" in the study"));
-    Ok(Reference::Own)
+    Ok((None, Vec::new()))
 }
 
+/// All against the limit of one.
 fn of_one(
     spec: &StudySpec,
     reference: &ReferenceSpec,
     methods: &[Method],
     scope: &Scope<'_>,
 ) -> Result<Reference, SceneError> {
-    let whole = Scope::of(scope.document);
-    let place = scope.key("method");
+    let own = scope.key("reference");
     let names: Vec<String> = methods.iter().map(|one| one.name.clone()).collect();
-    let method = place.find(&reference.method, &names, "the name of a method")?;
-    let points = match &reference.refine {
-        None => Vec::new(),
-        Some(refine) => points(spec, method, refine, &scope.key("refine"), &whole)?,
-    };
-    let (count, place) = match &reference.refine {
-        None => (methods[method].points.len(), scope.clone()),
-        Some(_) => (points.len(), scope.key("refine")),
+    let method = own.key("method");
+    let method = method.find(&reference.method, &names, "the name of a method")?;
+    let (points, count, place) = match &reference.refine {
+        None => (Vec::new(), methods[method].points.len(), own),
+        Some(refine) => {
+            let place = own.key("refine");
+            let points = points(spec, method, refine, &place, scope)?;
+            let count = points.len();
+            (points, count, place)
+        }
     };
     refuse!(if count < POINTS, place;
         found format!("{count} {}", if count == 1 { "point" } else { "points" }),
         expected format!("{POINTS} or more, from which a limit is extrapolated"));
-    Ok(Reference::Of { method, points })
+    Ok((Some(method), points))
 }
 
 /// Checks that all points have the same task: the same kind of problem, and motions of the same length.
 fn same_question(
     methods: &[Method],
-    reference: &Reference,
+    of_reference: &[StudyPoint],
     scope: &Scope<'_>,
 ) -> Result<StudyTask, SceneError> {
-    let extra = match reference {
-        Reference::Own => [].as_slice(),
-        Reference::Of { points, .. } => points.as_slice(),
-    };
     let key = |index| scope.key("methods").index(index);
     let each = methods.iter().enumerate();
     let each = each.flat_map(|(i, method)| method.points.iter().map(move |point| (i, point)));
-    let all = each
-        .map(|(i, point)| (key(i), point))
-        .chain(extra.iter().map(|point| (scope.key("reference"), point)));
+    let each = each.map(|(i, point)| (key(i), point));
+    let reference = of_reference.iter();
+    let all = each.chain(reference.map(|point| (scope.key("reference"), point)));
     let mut first: Option<(StudyTask, Option<f64>)> = None;
     for (place, point) in all {
         let Some((asked, duration)) = task_of(&point.loaded.task) else {
@@ -289,10 +280,10 @@ fn measures(
     let wanted = named.iter().enumerate().map(|(index, &measure)| {
         let place = scope.key("measures").index(index);
         refuse!(if named[..index].contains(&measure), place;
-            found format!("{:?} again", measure.key()), expected "each measure once");
-        let names: Vec<_> = all.iter().map(|m| format!("{:?}", m.key())).collect();
+            found format!("\"{measure}\" again"), expected "each measure once");
+        let names: Vec<_> = all.iter().map(|m| format!("\"{m}\"")).collect();
         refuse!(if !all.contains(&measure), place;
-            found format!("{:?}, which {} does not have", measure.key(), asked.name()),
+            found format!("\"{measure}\", which {} does not have", asked.name()),
             expected format!("one of {}", names.join(", ")));
         Ok(measure)
     });
@@ -387,20 +378,13 @@ fn label(number: f64) -> String {
 
 /// Values as they are written, and as numbers, where these are of one unit.
 fn of_one_unit(values: &[Value]) -> Option<(Vec<String>, Vec<f64>)> {
-    let split = |value: &Value| -> Option<(String, f64, String)> {
-        let text = match value {
-            Value::Number(number) => label(number.as_f64()?),
-            Value::String(text) => text.clone(),
-            _ => return None,
-        };
-        let ends = (1..=text.len()).rev().filter(|&k| text.is_char_boundary(k));
-        let mut heads = ends.filter_map(|k| Some((k, text[..k].trim().parse::<f64>().ok()?)));
-        let (end, number) = heads.next()?;
-        let unit = text[end..].trim().to_owned();
-        Some((text, number, unit))
+    let parts: Option<Vec<_>> = values.iter().map(number_and_unit).collect();
+    let (numbers, units): (Vec<_>, Vec<_>) = parts?.into_iter().unzip();
+    let is_same = units.iter().all(|unit| *unit == units[0]);
+    let text = |(value, number): (&Value, &f64)| match value.as_str() {
+        Some(text) => text.to_owned(),
+        None => label(*number),
     };
-    let parts = values.iter().map(split).collect::<Option<Vec<_>>>()?;
-    let same = parts.iter().all(|(_, _, unit)| *unit == parts[0].2);
-    let pair = |(text, number, _)| (text, number);
-    same.then(|| parts.into_iter().map(pair).unzip())
+    let texts = values.iter().zip(&numbers).map(text).collect();
+    is_same.then_some((texts, numbers))
 }

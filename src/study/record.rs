@@ -120,7 +120,8 @@ fn of_point(study: &Study, done: &Done<'_>, judged: &[Judged], [m, k]: [usize; 2
     let errors = judged
         .iter()
         .filter_map(|j| Some((j.measure, si(j, j.methods[m].errors[k]?))));
-    let values = judged.iter().filter_map(|j| {
+    let compared = judged.iter().filter(|j| j.measure.has_reference());
+    let values = compared.filter_map(|j| {
         let value = j.methods[m].values[k].as_ref()?;
         Some((
             j.measure,
@@ -161,12 +162,12 @@ pub(super) fn command(asked: StudyTask, point: &StudyPoint) -> String {
         StudyTask::Motion => "simulate",
         StudyTask::Rest => "equilibrium",
     };
-    let problem = point.problem.display().to_string();
-    let mut words = vec!["proboscis", word, &problem];
-    for change in &point.set {
-        words.extend(["--set", change]);
-    }
-    quoting::command(words)
+    let alone = CommandInput {
+        input: point.problem.clone(),
+        set: point.set.clone(),
+        ..CommandInput::default()
+    };
+    quoting::command(alone.words(word))
 }
 
 /// The machine that this runs on.

@@ -5,8 +5,8 @@ use indicatif::ProgressBar;
 
 use crate::app::{ProgressDisplay, progress_bar};
 use crate::stop;
-use crate::study::outcome::{INTERRUPTED, Observed, RunOutcome, run};
-use crate::study::read::{Method, Reference, Study, StudyPoint};
+use crate::study::outcome::{Observed, RunOutcome, run};
+use crate::study::read::{Method, Study, StudyPoint};
 
 /// A point after its runs.
 #[derive(Debug)]
@@ -60,27 +60,16 @@ pub(super) fn bar(study: &Study, runs: usize, shown: ProgressDisplay) -> Progres
     let count: usize = study.methods.iter().map(|m| m.points.len()).sum();
     progress_bar(
         shown,
-        Some(extra(study).len() + count * (1 + runs)),
+        Some(study.of_reference.len() + count * (1 + runs)),
         "{elapsed_precise} {wide_bar} run {pos} of {len}  {msg}",
     )
-}
-
-/// Points that are run for the reference alone.
-fn extra(study: &Study) -> &[StudyPoint] {
-    match &study.reference {
-        Reference::Own => &[],
-        Reference::Of { points, .. } => points,
-    }
 }
 
 /// Runs every point once and observes its answer; points that Ctrl-C leaves out are reported as interrupted.
 pub(super) fn look<'a>(study: &'a Study, bar: &ProgressBar) -> Results<'a> {
     let look = |name: &str, point: &'a StudyPoint| {
         bar.set_message(format!("{name}, {}", point.label));
-        let (first, seen) = match stop::requested() {
-            true => (not_run(), None),
-            false => run(point, Some(&study.markers)),
-        };
+        let (first, seen) = run(point, Some(&study.markers));
         bar.inc(1);
         Done {
             point,
@@ -94,7 +83,7 @@ pub(super) fn look<'a>(study: &'a Study, bar: &ProgressBar) -> Results<'a> {
         let points = method.points.iter();
         methods.push(points.map(|point| look(&method.name, point)).collect());
     }
-    let reference = extra(study).iter();
+    let reference = study.of_reference.iter();
     let reference = reference.map(|point| look("reference", point)).collect();
     Results {
         study,
@@ -117,15 +106,6 @@ pub(super) fn time(results: &mut Results<'_>, runs: usize, bar: &ProgressBar) {
         done.seconds.sort_by(f64::total_cmp);
     }
     results.is_interrupted = stop::requested();
-}
-
-fn not_run() -> RunOutcome {
-    RunOutcome {
-        status: INTERRUPTED,
-        message: None,
-        seconds: 0.0,
-        is_solved: false,
-    }
 }
 
 impl Done<'_> {
