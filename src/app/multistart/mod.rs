@@ -62,8 +62,18 @@ pub fn solve_from_starts(
         let first = seed.wrapping_mul(MOST as u64);
         (number > 1).then(|| first.wrapping_add(number as u64))
     };
-    let start = |number| run(request, &folder, number, seed_of(number), &places);
-    let runs: Vec<CommandInput> = (1..=starts).map(start).collect();
+    // All guesses have one seed, so that inputs which motions share begin alike.
+    let guess = |place, seed| format!("{place}={{\"random\":{{\"seed\":{seed}}}}}");
+    let run = |number| {
+        let guesses = places.iter();
+        let guesses = guesses.filter_map(|place| Some(guess(place, seed_of(number)?)));
+        CommandInput {
+            set: request.set.iter().cloned().chain(guesses).collect(),
+            output: Some(folder_of(&folder, number)),
+            ..request.clone()
+        }
+    };
+    let runs: Vec<CommandInput> = (1..=starts).map(run).collect();
     let batch = Batch {
         runs: &runs,
         text,
@@ -76,7 +86,7 @@ pub fn solve_from_starts(
     run_all(&batch, "start", request.progress, &mut |index, one| {
         let number = index + 1;
         ended.push(StartEnd::new(number, seed_of(number), one, &folder)?);
-        Ok(best(&ended).and_then(|i| ended[i].objective()))
+        Ok(best(&ended).and_then(StartEnd::objective))
     })?;
     ended.sort_by_key(|one| one.number);
     let distinct = number_optima(&mut ended);
@@ -120,11 +130,8 @@ fn check_problem(request: &CommandInput, loaded: &Loaded) -> Result<Vec<String>,
 fn remove_older(folder: &Path) {
     for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
         let name = entry.file_name();
-        if name
-            .to_string_lossy()
-            .bytes()
-            .all(|byte| byte.is_ascii_digit())
-        {
+        let name = name.to_string_lossy();
+        if name.bytes().all(|byte| byte.is_ascii_digit()) {
             fs::remove_dir_all(entry.path()).ok();
         }
     }
@@ -144,7 +151,7 @@ fn write(
     atomic::write(&folder.join("starts.csv"), csv.as_bytes())?;
     // Of the starts that found the best optimum the first, whatever the last digits say.
     let first = ended.iter().find(|one| one.optimum == Some(1));
-    let best = first.or_else(|| best(ended).map(|i| &ended[i]));
+    let best = first.or_else(|| best(ended));
     let solved = ended.iter().filter(|one| one.ended.is_solved).count();
     let seconds = batch.began.elapsed().as_secs_f64();
     let section = Entries::default()
@@ -162,7 +169,6 @@ fn write(
         copy(&folder_of(folder, best.number), folder, &section)?;
     }
     let is_stopped = stop::requested();
-    let is_solved = solved > 0 && !is_stopped;
     let counts = format!(
         "{solved} of {} starts solved, {distinct} distinct {}, {seconds:.2} s, {}",
         ended.len(),
@@ -170,14 +176,14 @@ fn write(
         folder.display()
     );
     let head = match best.and_then(StartEnd::objective) {
-        Some(objective) if is_solved => {
-            format!("solved: objective {}, {counts}", significant(objective, 8))
-        }
         Some(objective) if solved > 0 => {
-            format!(
-                "interrupted: best objective {}, {counts}",
-                significant(objective, 8)
-            )
+            let word = if is_stopped {
+                "interrupted: best"
+            } else {
+                "solved:"
+            };
+            let objective = significant(objective, 8);
+            format!("{word} objective {objective}, {counts}")
         }
         _ => format!("not solved: {counts}"),
     };
@@ -192,7 +198,7 @@ fn write(
         notes.push("interrupted; the files hold the best start that had ended".to_owned());
     }
     Ok(CommandOutput {
-        is_solved,
+        is_solved: solved > 0 && !is_stopped,
         result: format!("{head}\n{}", aligned(&shown)),
         notes,
     })
@@ -286,27 +292,6 @@ const FOLDER: &str = "starts";
 /// Folder of one start.
 fn folder_of(folder: &Path, start: usize) -> PathBuf {
     folder.join(FOLDER).join(format!("{start:02}"))
-}
-
-/// The solve of a start, from 1, of a problem whose guesses stand at these `places`.
-///
-/// All guesses have one seed, so that inputs which motions share begin alike.
-fn run(
-    request: &CommandInput,
-    folder: &Path,
-    number: usize,
-    seed: Option<u64>,
-    places: &[String],
-) -> CommandInput {
-    let mut run = CommandInput {
-        output: Some(folder_of(folder, number)),
-        ..request.clone()
-    };
-    if let Some(seed) = seed {
-        let guess = |place| format!("{place}={{\"random\":{{\"seed\":{seed}}}}}");
-        run.set.extend(places.iter().map(guess));
-    }
-    run
 }
 
 /// End of one start.
@@ -416,42 +401,31 @@ impl StartEnd {
             return false;
         };
         let close = |a: f64, b: f64, tolerance: f64| (a - b).abs() <= tolerance;
-        let largest = self
-            .voltages
-            .iter()
-            .fold(0.0, |most: f64, v| most.max(v.abs()));
+        let largest = self.voltages.iter();
+        let largest = largest.fold(0.0, |most: f64, v| most.max(v.abs()));
+        let mut pairs = self.voltages.iter().zip(&other.voltages);
         close(a, b, SAME_OBJECTIVE * a.abs().max(b.abs()))
             && self.voltages.len() == other.voltages.len()
-            && self
-                .voltages
-                .iter()
-                .zip(&other.voltages)
-                .all(|(a, b)| close(*a, *b, SAME_VOLTAGE * largest))
+            && pairs.all(|(a, b)| close(*a, *b, SAME_VOLTAGE * largest))
     }
 }
 
 /// The best start: see [`Rank`]; none where no start left a point.
-fn best(ended: &[StartEnd]) -> Option<usize> {
-    let best = (0..ended.len()).min_by(|&a, &b| ended[a].rank().compare(&ended[b].rank()))?;
-    ended[best].rank().has_point().then_some(best)
+fn best(ended: &[StartEnd]) -> Option<&StartEnd> {
+    let best = ended.iter().min_by(|a, b| a.rank().compare(&b.rank()));
+    best.filter(|best| best.rank().has_point())
 }
 
 /// Numbers the distinct optima, the best first; returns their number.
 fn number_optima(ended: &mut [StartEnd]) -> usize {
-    let mut solved: Vec<usize> = (0..ended.len())
-        .filter(|&i| ended[i].ended.is_solved)
-        .collect();
-    solved.sort_by(|&a, &b| ended[a].rank().compare(&ended[b].rank()));
-    let mut firsts: Vec<usize> = Vec::new();
-    for i in solved {
-        let known = firsts
-            .iter()
-            .position(|&first| ended[first].is_same(&ended[i]));
-        let number = known.unwrap_or_else(|| {
-            firsts.push(i);
-            firsts.len() - 1
-        });
-        ended[i].optimum = Some(number + 1);
+    let each = ended.iter_mut().filter(|one| one.ended.is_solved);
+    let mut solved: Vec<&mut StartEnd> = each.collect();
+    solved.sort_by(|a, b| a.rank().compare(&b.rank()));
+    let mut firsts: Vec<&StartEnd> = Vec::new();
+    for one in solved {
+        let known = firsts.iter().position(|first| first.is_same(one));
+        one.optimum = Some(known.unwrap_or(firsts.len()) + 1);
+        firsts.extend(known.is_none().then_some(&*one));
     }
     firsts.len()
 }
