@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 use std::sync::Arc;
 
+use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 use crate::control::problem::{
@@ -23,7 +24,7 @@ use crate::files::json::scope::{Result, Scope, refuse};
 use crate::files::json::set::{Override, value_at};
 use crate::files::json::tree::Json;
 use crate::files::problem::build::ProblemSpec;
-use crate::files::problem::control::COMMON;
+use crate::files::problem::control::{COMMON, CombinedSpec};
 use crate::files::problem::feedback::{CONTROL_FILE, DisturbanceSpec, ROUNDING};
 use crate::files::problem::identify::IdentifySpec;
 use crate::files::problem::simulation::refuse_given;
@@ -102,71 +103,57 @@ fn one<'a>(
             .moved
             .push((place.key(&key), scope.place.key(&key)));
     }
-    let value = |key: &str| motion.entry(key)?.read().ok();
+    let set = "an object of values by their places in the scene";
+    let set: Option<ChangesSpec> = written(motion, "set", scope, set)?;
+    let expected = "a place in the scene, such as scene.gravity; keys of \"control\" stand in the motion itself";
     Ok(MotionDocument {
-        name: name(value("name"), number, &scope.key("name"))?,
-        changes: changes(value("set"), &scope.key("set"))?,
+        name: name(motion, number, scope)?,
+        changes: Changes::of_scene(&set.unwrap_or_default(), &scope.key("set"), expected)?,
         document,
     })
 }
 
+/// What is written under a key of an object at a place, where something is.
+fn written<T: DeserializeOwned>(
+    object: Json<'_>,
+    key: &str,
+    scope: &Scope<'_>,
+    expected: &str,
+) -> Result<Option<T>> {
+    let Some(entry) = object.entry(key) else {
+        return Ok(None);
+    };
+    let wrong = |_| scope.key(key).wrong(entry.to_string(), expected);
+    entry.read::<Option<T>>().map_err(wrong)
+}
+
 /// The name of a motion, which is that of a folder.
-fn name(written: Option<Value>, number: usize, scope: &Scope<'_>) -> Result<String> {
-    let name = match written {
-        None | Some(Value::Null) => return Ok(format!("motion{}", number + 1)),
-        Some(Value::String(name)) => name,
-        Some(other) => return Err(scope.wrong(other.to_string(), "a name")),
+fn name(motion: Json<'_>, number: usize, scope: &Scope<'_>) -> Result<String> {
+    let Some(name) = written::<String>(motion, "name", scope, "a name")? else {
+        return Ok(format!("motion{}", number + 1));
     };
     let fits = |c: char| c.is_alphanumeric() || "_-".contains(c);
-    refuse!(if name.is_empty() || !name.chars().all(fits), scope;
+    refuse!(if name.is_empty() || !name.chars().all(fits), scope.key("name");
         found format!("{name:?}"),
         expected "a name of letters, digits, _ and -, which is that of its folder");
     Ok(name)
-}
-
-/// The constants of the scene that are other ones in a motion.
-fn changes<'a>(written: Option<Value>, scope: &Scope<'a>) -> Result<Changes<'a>> {
-    match written {
-        None | Some(Value::Null) => Ok(Changes::default()),
-        Some(Value::Object(entries)) => Changes::of_scene(
-            &entries,
-            scope,
-            "a place in the scene, such as scene.gravity; keys of \"control\" stand in the motion itself",
-        ),
-        Some(other) => Err(scope.wrong(
-            other.to_string(),
-            "an object of values by their places in the scene",
-        )),
-    }
-}
-
-/// The objective of all motions, the sum where none is written.
-fn combined(written: Option<&str>, scope: &Scope<'_>) -> Result<Combined> {
-    match written {
-        None | Some("\"sum\"" | "null") => Ok(Combined::Sum),
-        Some("\"worst\"") => Ok(Combined::Worst),
-        Some(other) => Err(scope.wrong(other, "\"sum\" or \"worst\"")),
-    }
 }
 
 /// The motions, if what they are to share can be shared.
 pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions> {
     let of_all = Scope::of(document).key("control");
     let scope = of_all.key("shared_inputs");
-    let key = |key: &str| document.entry("control")?.entry(key);
-    let shared_inputs: Vec<String> = match key("shared_inputs") {
-        None => Vec::new(),
-        Some(written) => written.read().map_err(|_| {
-            scope.wrong(
-                written.to_string(),
-                "a list of names of muscles, driven electrodes and loads",
-            )
-        })?,
-    };
+    let names = "a list of names of muscles, driven electrodes and loads";
+    let control = document.entry("control").expect("it has the motions");
+    let shared_inputs: Option<_> = written(control, "shared_inputs", &of_all, names)?;
+    let combined = written(control, "combine", &of_all, "\"sum\" or \"worst\"")?;
     let motions = Motions {
         list,
-        shared_inputs,
-        combined: combined(key("combine").map(Json::written), &of_all.key("combine"))?,
+        shared_inputs: shared_inputs.unwrap_or_default(),
+        combined: match combined {
+            None | Some(CombinedSpec::Sum) => Combined::Sum,
+            Some(CombinedSpec::Worst) => Combined::Worst,
+        },
     };
     scope.unique(&motions.shared_inputs, &[], |index| scope.index(index))?;
     for (index, name) in motions.shared_inputs.iter().enumerate() {
