@@ -184,9 +184,10 @@ fn of_optimum(optimum: &Optimum, names: &[String]) -> Observed {
         iterations: solution.iterations.len().saturating_sub(1),
         ..Observed::from_motion(model, &trajectory(model, motion), names)
     };
-    let mut number = |measure, value| seen.numbers.insert(measure, value);
-    number(StudyMeasure::Objective, solution.objective);
-    number(StudyMeasure::Infeasibility, *infeasibility);
+    seen.numbers.extend([
+        (StudyMeasure::Objective, solution.objective),
+        (StudyMeasure::Infeasibility, *infeasibility),
+    ]);
     let fine = h / FINER as f64;
     let scalars = |from: f64, to: f64| {
         let k = (0.5 * (from + to) / h) as usize;
@@ -200,10 +201,10 @@ fn of_optimum(optimum: &Optimum, names: &[String]) -> Observed {
             Observed::from_motion(model, &Trajectory::from_discrete(model, &discrete), names);
         let apart = |k: usize| furthest(&seen.places[k], &again.places[FINER * k]);
         let distances: Vec<f64> = (0..=n).map(apart).collect();
-        let greatest = distances.iter().fold(0.0_f64, |m, d| m.max(*d));
-        seen.numbers
-            .insert(StudyMeasure::ResimulatedEnd, distances[n]);
-        seen.numbers.insert(StudyMeasure::ResimulatedPath, greatest);
+        seen.numbers.extend([
+            (StudyMeasure::ResimulatedEnd, distances[n]),
+            (StudyMeasure::ResimulatedPath, greatest(&distances)),
+        ]);
     }
     seen
 }
@@ -212,7 +213,6 @@ fn of_motion(simulated: &Simulated, task: &Simulation, names: &[String]) -> Obse
     let Simulated {
         model, discrete, ..
     } = simulated;
-    let conservative = task.voltages.are_constant();
     let mut seen = Observed {
         iterations: discrete.report.iterations,
         // Steps by a tolerance have the length that they need.
@@ -223,16 +223,18 @@ fn of_motion(simulated: &Simulated, task: &Simulation, names: &[String]) -> Obse
         ..Observed::from_motion(model, &Trajectory::from_discrete(model, discrete), names)
     };
     let observed = observations(model, discrete);
-    if let Some(violations) = column(&observed, "constraint_violation") {
-        let greatest = violations.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        seen.numbers
-            .insert(StudyMeasure::ConstraintViolation, greatest);
-    }
-    if let Some([balance, drift]) = energy(&observed).filter(|_| conservative) {
-        seen.numbers.insert(StudyMeasure::EnergyBalance, balance);
-        seen.numbers.insert(StudyMeasure::EnergyDrift, drift);
+    let violation = column(&observed, "constraint_violation").map(greatest);
+    let violation = violation.map(|greatest| (StudyMeasure::ConstraintViolation, greatest));
+    seen.numbers.extend(violation);
+    if task.voltages.are_constant() {
+        seen.numbers.extend(energy(&observed).into_iter().flatten());
     }
     seen
+}
+
+/// Greatest size of a value.
+fn greatest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most, value| most.max(value.abs()))
 }
 
 fn column<'a>(observed: &'a Observations, name: &str) -> Option<&'a [f64]> {
@@ -242,20 +244,24 @@ fn column<'a>(observed: &'a Observations, name: &str) -> Option<&'a [f64]> {
 
 /// Greatest change of the energy with what was dissipated, and how much its mean over the last quarter of the instants differs
 /// from that over the first, both relative to the greatest kinetic energy; none of a system that never moves.
-fn energy(observed: &Observations) -> Option<[f64; 2]> {
+fn energy(observed: &Observations) -> Option<[(StudyMeasure, f64); 2]> {
     let total = column(observed, "total_energy")?;
     let kinetic = column(observed, "kinetic_energy")?;
     let [dissipated, supplied] =
         ["dissipated_energy", "following_load_work"].map(|name| column(observed, name));
     let at = |values: Option<&[f64]>, k: usize| values.map_or(0.0, |values| values[k]);
     let sum = |k: usize| total[k] + at(dissipated, k) - at(supplied, k);
-    let sums: Vec<f64> = (0..total.len()).map(sum).collect();
-    let scale = kinetic.iter().fold(0.0_f64, |m, e| m.max(*e));
-    let quarter = (sums.len() / 4).max(1);
-    let mean = |part: &[f64]| part.iter().map(|e| e - sums[0]).sum::<f64>() / part.len() as f64;
-    let drift = mean(&sums[sums.len() - quarter..]) - mean(&sums[..quarter]);
-    let change = sums.iter().fold(0.0_f64, |m, e| m.max((e - sums[0]).abs()));
-    (scale > 0.0).then(|| [change / scale, drift.abs() / scale])
+    let changes: Vec<f64> = (0..total.len()).map(|k| sum(k) - sum(0)).collect();
+    let scale = greatest(kinetic);
+    let quarter = (changes.len() / 4).max(1);
+    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+    let drift = mean(&changes[changes.len() - quarter..]) - mean(&changes[..quarter]);
+    (scale > 0.0).then(|| {
+        [
+            (StudyMeasure::EnergyBalance, greatest(&changes) / scale),
+            (StudyMeasure::EnergyDrift, drift.abs() / scale),
+        ]
+    })
 }
 
 /// The status of a point whose model, start or goal does not exist.

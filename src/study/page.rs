@@ -101,18 +101,11 @@ fn failed(results: &Results<'_>) -> Option<String> {
     let mut text = String::new();
     for (method, points) in results.each() {
         for done in points.iter().filter(|done| !done.first.is_solved) {
-            let why = done
-                .first
-                .message
-                .as_deref()
-                .unwrap_or("it was not run to the end");
-            text.push_str(&format!(
-                "* {}, {} {}: {} ({why})\n",
-                method.name,
-                method.refined,
-                done.point.label,
-                done.first.status.replace('_', " ")
-            ));
+            let why = done.first.message.as_deref();
+            let why = why.unwrap_or("it was not run to the end");
+            let (label, status) = (&done.point.label, done.first.status.replace('_', " "));
+            let (name, refined) = (&method.name, &method.refined);
+            text.push_str(&format!("* {name}, {refined} {label}: {status} ({why})\n"));
         }
     }
     (!text.is_empty()).then(|| format!("## Points without an answer\n\n{text}"))
@@ -120,15 +113,12 @@ fn failed(results: &Results<'_>) -> Option<String> {
 
 /// Returns the commands that run one point of each method alone.
 fn again(results: &Results<'_>) -> String {
-    let mut text = "## A point alone\n\nThe coarsest point of each method; the others differ in what is refined.\n\n```sh\n".to_owned();
-    for points in &results.methods {
-        if let Some(done) = points.first() {
-            text.push_str(&command(results.study.asked, done.point));
-            text.push('\n');
-        }
-    }
-    text.push_str("```");
-    text
+    let coarsest = results.methods.iter().filter_map(|points| points.first());
+    let commands = coarsest.map(|done| command(results.study.asked, done.point) + "\n");
+    let commands: String = commands.collect();
+    format!(
+        "## A point alone\n\nThe coarsest point of each method; the others differ in what is refined.\n\n```sh\n{commands}```"
+    )
 }
 
 /// The diagram of one measure; none where no error is above zero.

@@ -1,6 +1,5 @@
 //! A sweep file, and the variants that it asks for.
 
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
@@ -134,15 +133,11 @@ fn varied(
     refuse!(if spec.vary.is_empty(), scope;
         found "nothing that varies",
         expected "places with values, or a \"table\" beside \"problem\"");
-    let read: BTreeMap<&String, Values> = spec
-        .vary
-        .iter()
-        .map(|(place, written)| Ok((place, Values::from_spec(written, &scope.key(place))?)))
-        .collect::<Result<_, SceneError>>()?;
+    let values = |_: &str, written: &VarySpec, at: &Scope<'_>| Values::from_spec(written, at);
+    let values: Vec<Values> = scope.each_named(&spec.vary, values)?;
     let lists = || -> Result<Vec<Vec<Value>>, SceneError> {
-        let each = read.iter();
-        each.map(|(place, values)| values.all(&scope.key(place)))
-            .collect()
+        let each = spec.vary.keys().zip(&values);
+        scope.each_named(each, |_, values, at| values.all(at))
     };
     let limited = |count: Option<usize>| match count {
         Some(count) if (1..=MOST).contains(&count) => Ok(()),
@@ -165,7 +160,7 @@ fn varied(
         CombineSpec::Together => {
             let lists = lists()?;
             let first = lists[0].len();
-            for (place, list) in read.keys().zip(&lists) {
+            for (place, list) in spec.vary.keys().zip(&lists) {
                 refuse!(if list.len() != first, scope.key(place);
                     found format!("{} values", list.len()),
                     expected format!("{first}, as in the first list"));
@@ -177,7 +172,7 @@ fn varied(
         CombineSpec::Random(asked) => {
             limited(Some(asked.count))?;
             let mut random = Random::new(asked.seed);
-            let mut row = || read.values().map(|one| one.draw(&mut random)).collect();
+            let mut row = || values.iter().map(|one| one.draw(&mut random)).collect();
             (0..asked.count).map(|_| row()).collect()
         }
     };

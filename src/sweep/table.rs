@@ -23,10 +23,8 @@ pub(super) fn table(sweep: &Sweep, ends: &[&Ended]) -> Vec<Vec<String>> {
     }
     names.sort_by_key(|name| name.starts_with(END));
     let fixed = ["variant", "status", "seconds [s]"].map(str::to_owned);
-    let columns: Vec<Varied> = (0..sweep.places.len())
-        .map(|place| Varied::of(sweep, place))
-        .collect();
-    let places = columns.iter().map(|column| column.heading.clone());
+    let columns = (0..sweep.places.len()).map(|place| varied(sweep, place));
+    let (places, columns): (Vec<_>, Vec<_>) = columns.unzip();
     let head = fixed.into_iter().chain(places);
     let head = head.chain(names.iter().map(|&name| name.clone())).collect();
     let rows = ends.iter().enumerate().map(|(row, end)| {
@@ -35,7 +33,7 @@ pub(super) fn table(sweep: &Sweep, ends: &[&Ended]) -> Vec<Vec<String>> {
             end.summary.status.clone(),
             format!("{:?}", end.summary.seconds.total),
         ];
-        let values = columns.iter().map(|column| column.cells[row].clone());
+        let values = columns.iter().map(|cells| cells[row].clone());
         let numbers = names.iter().map(|&name| numbers[row].get(name));
         let numbers = numbers.map(|number| number.map_or_else(String::new, cell));
         fixed.into_iter().chain(values).chain(numbers).collect()
@@ -68,38 +66,27 @@ fn last_row(table: &Path) -> Option<Vec<(String, Value)>> {
     Some(numbers.collect())
 }
 
-/// Entry that varies at one place.
-struct Varied {
-    heading: String,
-    cells: Vec<String>,
-}
-
-impl Varied {
-    /// Quantities are numbers in the International System, with their unit in the heading, if all of the place have the same, but for variants that
-    /// are refused; what else varies is written as in the sweep.
-    fn of(sweep: &Sweep, place: usize) -> Self {
-        let name = &sweep.places[place];
-        let accepted = sweep.variants.iter().filter(|one| one.refused.is_none());
-        let quantities: Option<Vec<_>> = accepted.map(|one| quantity(&one.values[place])).collect();
-        let quantities = quantities.unwrap_or_default();
-        let mut units = quantities.iter().filter_map(|(_, unit)| unit.as_ref());
-        let unit = units
-            .next()
-            .filter(|&first| units.all(|unit| unit == first));
-        let written = |variant: &Variant| match (unit, quantity(&variant.values[place])) {
-            (Some(known), Some((number, unit))) if unit.as_ref().is_none_or(|one| one == known) => {
-                format!("{number:?}")
-            }
-            _ => cell(&variant.values[place]),
-        };
-        Self {
-            heading: match unit {
-                Some(unit) => format!("{name} [{unit}]"),
-                None => name.clone(),
-            },
-            cells: sweep.variants.iter().map(written).collect(),
+/// Heading and cells of the entry that varies at one place.
+///
+/// Quantities are numbers in the International System, with their unit in the heading, if all of the place have the same, but for variants that are
+/// refused; what else varies is written as in the sweep.
+fn varied(sweep: &Sweep, place: usize) -> (String, Vec<String>) {
+    let name = &sweep.places[place];
+    let accepted = sweep.variants.iter().filter(|one| one.refused.is_none());
+    let quantities: Option<Vec<_>> = accepted.map(|one| quantity(&one.values[place])).collect();
+    let quantities = quantities.unwrap_or_default();
+    let mut units = quantities.iter().filter_map(|(_, unit)| unit.as_ref());
+    let unit = units.next();
+    let unit = unit.filter(|&first| units.all(|unit| unit == first));
+    let written = |variant: &Variant| match (unit, quantity(&variant.values[place])) {
+        (Some(known), Some((number, unit))) if unit.as_ref().is_none_or(|one| one == known) => {
+            format!("{number:?}")
         }
-    }
+        _ => cell(&variant.values[place]),
+    };
+    let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}]"));
+    let cells = sweep.variants.iter().map(written).collect();
+    (format!("{name}{unit}"), cells)
 }
 
 /// The number of a quantity in the International System, with its unit; none of a plain number.

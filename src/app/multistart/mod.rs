@@ -45,7 +45,12 @@ pub fn solve_from_starts(
     wanted: RunIn,
 ) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
-    check_number(starts)?;
+    if !(1..MOST).contains(&starts) {
+        let most = MOST - 1;
+        return Err(wrong_option(format!(
+            "expected a number of starting points from 1 to {most}"
+        )));
+    }
     let loaded = read(&request.input, text, &request.set)?;
     let places = check_problem(request, &loaded)?;
     let run_in = wanted.of_tasks(task_runs_at_once(&loaded));
@@ -95,16 +100,6 @@ pub fn solve_from_starts(
 
 fn wrong_option(reason: String) -> CommandError {
     CommandError::option("--starts", reason)
-}
-
-fn check_number(starts: usize) -> Result<(), CommandError> {
-    match (1..MOST).contains(&starts) {
-        true => Ok(()),
-        false => Err(wrong_option(format!(
-            "expected a number of starting points from 1 to {}",
-            MOST - 1
-        ))),
-    }
 }
 
 /// Checks that a problem has starting points, and that its starts and goals exist; returns the places of its guesses.

@@ -392,23 +392,23 @@ pub(crate) fn add_plan(
     scope: &Scope<'_>,
     read: impl Fn(&Path) -> Result<(System, Task, Option<Regulator>)>,
 ) -> Result<()> {
-    let simulate = spec.simulate.as_ref();
-    let written = simulate.and_then(|one| one.controller.as_ref());
-    let written_delay = written.and_then(|one| one.delay.as_ref());
-    let written = written.and_then(|one| one.horizon.as_ref());
-    let (Some(horizon), Task::Simulate(simulation)) = (written, task) else {
+    let written = spec.simulate.as_ref().and_then(|simulate| {
+        let controller = simulate.controller.as_ref()?;
+        Some((simulate, &controller.delay, controller.horizon.as_ref()?))
+    });
+    let Some((simulate, written_delay, horizon)) = written else {
         return Ok(());
     };
     let place = scope.key("simulate").key("controller").key("horizon");
     let most = Ahead::MOST_INTERVALS;
     let intervals = place.key("intervals");
     intervals.count(horizon.intervals, "interval", most)?;
-    let Simulation {
+    let Task::Simulate(Simulation {
         duration,
         step,
         controller: Some(controller),
         ..
-    } = simulation
+    }) = task
     else {
         return Ok(());
     };
@@ -445,9 +445,7 @@ pub(crate) fn add_plan(
         h: sample,
         ..(*controller.law).clone()
     });
-    if let Some(simulate) = simulate {
-        refuse_given(simulate, &controller.law, &scope.key("simulate"))?;
-    }
+    refuse_given(simulate, &controller.law, &scope.key("simulate"))?;
     let regulator = regulator.unwrap_or_default();
     controller.sample = sample;
     if written_delay.is_none() {
