@@ -22,7 +22,7 @@ use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::{self, write_run};
 use crate::stop::{self, TimeLimit};
-use crate::tasks::{self, Assessment, SimulationRequest, SimulationResult};
+use crate::tasks::{self, Assessment, DisturbedLoops, SimulationRequest, SimulationResult};
 use crate::workflow::closed_loop::DisturbedLoop;
 use crate::workflow::effects::Plan;
 use crate::workflow::integrate::grid;
@@ -153,9 +153,8 @@ struct Observed {
 struct Ended<'a> {
     run: Run<'a>,
     result: SimulationResult,
-    /// Closed loops with parts of the disturbance, and reasons why some are left out.
-    loops: Vec<DisturbedLoop>,
-    left_out: Vec<String>,
+    /// Closed loops with parts of the disturbance.
+    disturbed: DisturbedLoops,
 }
 
 impl<'a> Ended<'a> {
@@ -172,8 +171,7 @@ impl<'a> Ended<'a> {
         Ok(Self {
             run,
             result,
-            loops: found.loops,
-            left_out: found.left_out,
+            disturbed: found,
         })
     }
 
@@ -321,7 +319,7 @@ impl<'a> Ended<'a> {
         summary.notes.clone_from(&assessment.remarks);
         summary.closed_loop.clone_from(&self.result.closed_loop);
         summary.notes.note("units", self.run.loaded.notes.clone());
-        let left_out = self.left_out.iter().cloned();
+        let left_out = self.disturbed.left_out.iter().cloned();
         summary.notes.warn("disturbance", left_out);
     }
 
@@ -374,7 +372,7 @@ impl<'a> Ended<'a> {
             },
             comparison: open.as_ref().map(|o| ("without feedback", o)).or(earlier),
             tracked: &tracked,
-            disturbed: &self.loops,
+            disturbed: &self.disturbed.loops,
             held: held.as_deref(),
             figures: request.figures,
             page: request.page.of(&content),

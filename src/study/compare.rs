@@ -176,12 +176,9 @@ fn scale(results: &Results<'_>, measure: StudyMeasure) -> f64 {
         };
         seen.places.iter().map(apart).fold(0.0, f64::max)
     };
-    match measure.unit() {
-        Unit::Length => match seen.map(path_length).fold(0.0, f64::max) {
-            length if length > 0.0 => length,
-            _ => 1.0,
-        },
-        Unit::Relative => 1.0,
+    match (measure.unit(), seen.map(path_length).fold(0.0, f64::max)) {
+        (Unit::Length, length) if length > 0.0 => length,
+        _ => 1.0,
     }
 }
 

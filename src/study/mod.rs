@@ -17,7 +17,6 @@ mod record;
 pub mod schedule;
 pub mod table;
 
-use std::path::Path;
 use std::time::Instant;
 
 use crate::app::{CommandError, CommandInput, CommandOutput, make_folder};
@@ -58,12 +57,24 @@ pub fn study(request: &CommandInput, runs: Option<usize>) -> Result<CommandOutpu
     let judged = judge(&results);
     let said = conclusion(&results, &judged);
     let table = write(request, runs, &results, &judged, &said)?;
-    Ok(command_output(
-        &results,
-        &format!("{table}{said}\n"),
-        &folder,
-        began,
-    ))
+    let [solved, all] = results.solved();
+    let points = results.methods.iter().flatten();
+    let failed = points.filter(|done| !done.first.is_solved);
+    let failed = failed.filter_map(|done| {
+        let why = done.first.message.as_ref()?;
+        Some(format!("{}: {why}", done.point.set.join(", ")))
+    });
+    let interrupted = "interrupted; the files hold the results up to then".to_owned();
+    let interrupted = results.is_interrupted.then_some(interrupted);
+    Ok(CommandOutput {
+        is_solved: solved > 0 && !results.is_interrupted,
+        result: format!(
+            "{table}{said}\n{solved} of {all} points solved, {:.1} s, {}",
+            began.elapsed().as_secs_f64(),
+            folder.display()
+        ),
+        notes: failed.chain(interrupted).collect(),
+    })
 }
 
 /// Writes all files; the table to read.
@@ -121,33 +132,4 @@ fn write(
     let path = folder.join("study.json");
     record::write(&path, request, runs, results, judged, said)?;
     Ok(text)
-}
-
-fn command_output(
-    results: &Results<'_>,
-    text: &str,
-    folder: &Path,
-    began: Instant,
-) -> CommandOutput {
-    let [solved, all] = results.solved();
-    let points = results.methods.iter().flatten();
-    let failed = points.filter(|done| !done.first.is_solved);
-    let mut notes: Vec<String> = failed
-        .filter_map(|done| {
-            let why = done.first.message.as_ref()?;
-            Some(format!("{}: {why}", done.point.set.join(", ")))
-        })
-        .collect();
-    if results.is_interrupted {
-        notes.push("interrupted; the files hold the results up to then".to_owned());
-    }
-    CommandOutput {
-        is_solved: solved > 0 && !results.is_interrupted,
-        result: format!(
-            "{text}{solved} of {all} points solved, {:.1} s, {}",
-            began.elapsed().as_secs_f64(),
-            folder.display()
-        ),
-        notes,
-    }
 }

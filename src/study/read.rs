@@ -85,10 +85,13 @@ pub fn read_study(path: &Path) -> Result<Study, SceneError> {
         Some(reference) => of_one(&spec, reference, &methods, &scope)?,
     };
     let asked = same_question(&methods, &of_reference, &scope)?;
+    let runs = spec.runs.unwrap_or(RUNS);
+    refuse!(if runs < RUNS, scope.key("runs");
+        found runs, expected format!("{RUNS} runs or more"));
     Ok(Study {
         markers: markers(&spec, &methods, &scope)?,
         measures: measures(&spec, asked, &methods, &scope)?,
-        runs: runs(&spec, &scope)?,
+        runs,
         title: spec.title,
         about: spec.about,
         asked,
@@ -291,13 +294,6 @@ fn measures(
     refuse!(if wanted.is_empty(), scope.key("measures");
         found "an empty list", expected "1 measure or more");
     Ok(wanted)
-}
-
-fn runs(spec: &StudySpec, scope: &Scope<'_>) -> Result<usize, SceneError> {
-    let runs = spec.runs.unwrap_or(RUNS);
-    refuse!(if runs < RUNS, scope.key("runs");
-        found runs, expected format!("{RUNS} runs or more"));
-    Ok(runs)
 }
 
 /// A path without `..` and `.`, where it leads to the same file.

@@ -38,27 +38,33 @@ fn panels(parts: &[DisturbedLoop], place: usize) -> Vec<Value> {
         "m" => ("mm", 1.0),
         _ => ("°", 1_f64.to_degrees()),
     };
-    let scaled = |values: &[f64]| values.iter().map(|v| factor * v).collect::<Vec<_>>();
-    let mut panels = Vec::new();
-    if first.kind == "marker" {
-        for plane in PLANES {
-            let points = |one: &Tracked, _: &[f64]| {
-                let [a, b] = plane.map(|axis| &one.paths[axis.min(one.paths.len() - 1)].value);
-                a.iter().zip(b).map(|(&a, &b)| [a, b]).collect()
-            };
-            let title = format!("{name}, {}", tip_path::plane_name(plane));
-            let plot = tip_path::in_plane(plane, Vec::new());
-            panels.push(panel_of(parts, place, &title, plot, &points, true));
-        }
-    } else {
-        let points = |one: &Tracked, times: &[f64]| over_time(times, scaled(&one.paths[0].value));
-        let plot = LinePlot::over_time(format!("{name} [{unit}]"), Vec::new());
-        panels.push(panel_of(parts, place, name, plot, &points, true));
-    }
-    let points = |one: &Tracked, times: &[f64]| over_time(times, scaled(&one.deviation));
+    let in_time =
+        |times: &[f64], values: &[f64]| over_time(times, values.iter().map(|v| factor * v));
+    let coordinate = |one: &Tracked, times: &[f64]| in_time(times, &one.paths[0].value);
+    let deviation = |one: &Tracked, times: &[f64]| in_time(times, &one.deviation);
+    let plot = |label: &str| LinePlot::over_time(format!("{label} [{unit}]"), Vec::new());
+    let in_plane = |plane: [usize; 2]| {
+        let points = |one: &Tracked, _: &[f64]| {
+            let [a, b] = plane.map(|axis| &one.paths[axis.min(one.paths.len() - 1)].value);
+            a.iter().zip(b).map(|(&a, &b)| [a, b]).collect()
+        };
+        let title = format!("{name}, {}", tip_path::plane_name(plane));
+        let plot = tip_path::in_plane(plane, Vec::new());
+        panel_of(parts, place, &title, plot, &points, true)
+    };
+    let mut panels = match first.kind {
+        "marker" => PLANES.map(in_plane).to_vec(),
+        _ => vec![panel_of(parts, place, name, plot(name), &coordinate, true)],
+    };
     let title = format!("{name}, distance from the reference");
-    let plot = LinePlot::over_time(format!("deviation [{unit}]"), Vec::new());
-    panels.push(panel_of(parts, place, &title, plot, &points, false));
+    panels.push(panel_of(
+        parts,
+        place,
+        &title,
+        plot("deviation"),
+        &deviation,
+        false,
+    ));
     panels
 }
 
@@ -75,23 +81,19 @@ fn panel_of(
     has_reference: bool,
 ) -> Value {
     let mut sizes = Vec::new();
-    let mut add = |curve: Series, size: Option<usize>| {
-        plot.series.push(curve);
-        sizes.push(size);
-    };
     for (size, part) in parts.iter().enumerate() {
         let open = part.closed.open_loop.as_ref();
-        if let Some((open, tracked)) = open.zip(part.closed.tracked_open.get(place)) {
+        let open = open.zip(part.closed.tracked_open.get(place));
+        let open = open.map(|(open, tracked)| {
             let points = points(tracked, &open.times);
-            let curve = Series::curve("without feedback", points, style::MUTED);
-            add(curve, Some(size));
-        }
-        if let Some(tracked) = part.closed.tracked.get(place) {
-            let points = points(tracked, &part.times);
-            let mut curve = Series::curve("with feedback", points, style::hue(0));
-            curve.width = 2.0;
-            add(curve, Some(size));
-        }
+            Series::curve("without feedback", points, style::MUTED)
+        });
+        let closed = part.closed.tracked.get(place).map(|tracked| Series {
+            width: 2.0,
+            ..Series::curve("with feedback", points(tracked, &part.times), style::hue(0))
+        });
+        plot.series.extend(open.into_iter().chain(closed));
+        sizes.resize(plot.series.len(), Some(size));
     }
     // A motion that ended early has a part of it.
     let longest = parts.iter().max_by_key(|part| part.times.len());
@@ -101,8 +103,9 @@ fn panel_of(
         paths.for_each(|path| path.value.clone_from(&path.reference));
         let points = points(&followed, &part.times);
         let curve = Series::curve("reference", points, style::INK);
-        add(curve.dashed(Dash::Dashed), None);
+        plot.series.push(curve.dashed(Dash::Dashed));
     }
+    sizes.resize(plot.series.len(), None);
     let mut value = panel(title, &plot);
     for (k, size) in sizes.into_iter().enumerate() {
         value["series"][k]["size"] = size.into();
