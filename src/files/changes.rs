@@ -3,7 +3,6 @@
 use crate::files::json::error::{Result, SceneError};
 use crate::files::json::path::JsonPath;
 use crate::files::json::scope::{Scope, refuse};
-use crate::files::json::set::Override;
 use crate::files::study::ChangesSpec;
 use serde_json::Value;
 use std::path::Path;
@@ -45,12 +44,6 @@ impl<'a> Changes<'a> {
         self.words.push(format!("{key}={}", word(value)));
         self.from.push((place, scope));
         Ok(())
-    }
-
-    /// The overrides, as they are read again.
-    pub(crate) fn overrides(&self) -> Result<Vec<Override>> {
-        let each = self.words.iter();
-        each.map(|written| Override::parse(written)).collect()
     }
 
     /// Moves an error of an override to its place in that file; any other stays where it is.

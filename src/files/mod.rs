@@ -116,11 +116,7 @@ pub fn read_problem_text(path: &Path, text: &str, overrides: &[String]) -> Resul
 }
 
 fn problem_of(read: impl FnOnce() -> Result<Document>, overrides: &[String]) -> Result<Loaded> {
-    let overrides: Vec<Override> = overrides
-        .iter()
-        .map(|written| Override::parse(written))
-        .collect::<Result<_, _>>()?;
-    let [of_scene, of_problem] = parted(overrides);
+    let [of_scene, of_problem] = parted(Override::parse_each(overrides)?);
     let mut document = read()?;
     for change in &of_problem {
         change.apply(&mut document)?;
@@ -172,7 +168,7 @@ fn changed(
     set: &ChangesSpec,
 ) -> Result<Loaded> {
     let path = document.path.clone();
-    let [in_scene, in_problem] = parted(changes.overrides()?);
+    let [in_scene, in_problem] = parted(Override::parse_each(&changes.words)?);
     let mut in_problem = in_problem.iter();
     let applied = in_problem.try_for_each(|change| change.apply(&mut document));
     let loaded = applied.and_then(|()| alone(document, &[of_scene, &in_scene].concat(), set));

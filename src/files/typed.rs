@@ -45,8 +45,7 @@ pub fn read_system(path: &Path, overrides: &[String]) -> Result<System> {
     if document.entry("scene").is_some() {
         return Ok(crate::files::read_problem(path, overrides)?.system);
     }
-    for written in overrides {
-        let change = Override::parse(written)?;
+    for change in Override::parse_each(overrides)? {
         change.in_scene().unwrap_or(change).apply(&mut document)?;
     }
     build_scene(&document.parse()?, &Scope::of(&document))

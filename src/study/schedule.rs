@@ -78,11 +78,11 @@ pub(super) fn look<'a>(study: &'a Study, bar: &ProgressBar) -> Results<'a> {
             seconds: Vec::new(),
         }
     };
-    let mut methods: Vec<Vec<_>> = Vec::new();
-    for method in &study.methods {
+    let of_method = |method: &'a Method| {
         let points = method.points.iter();
-        methods.push(points.map(|point| look(&method.name, point)).collect());
-    }
+        points.map(|point| look(&method.name, point)).collect()
+    };
+    let methods: Vec<Vec<_>> = study.methods.iter().map(of_method).collect();
     let reference = study.of_reference.iter();
     let reference = reference.map(|point| look("reference", point)).collect();
     Results {

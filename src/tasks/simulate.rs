@@ -294,9 +294,6 @@ pub struct DisturbedLoops {
     pub stopped: Option<Status>,
 }
 
-/// The part that is the problem itself.
-const WHOLE: f64 = 1.0;
-
 /// Closed loops with all parts of a disturbance, next to that of the whole, which has been simulated. They end after a number of seconds.
 ///
 /// # Errors
@@ -317,7 +314,7 @@ pub fn disturbed(
     for Disturbed { size, system, task } in parts {
         let simulated;
         let mut found = whole;
-        if *size != WHOLE {
+        if *size != DisturbedLoop::WHOLE {
             let request = SimulationRequest {
                 seconds: seconds.map(|limit| limit - began.elapsed().as_secs_f64()),
                 ..SimulationRequest::default()

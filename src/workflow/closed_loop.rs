@@ -84,6 +84,9 @@ pub struct DisturbedLoop {
 }
 
 impl DisturbedLoop {
+    /// The part that is the problem itself.
+    pub(crate) const WHOLE: f64 = 1.0;
+
     /// Its numbers for a summary.
     pub fn report(&self) -> PartOfDisturbance {
         PartOfDisturbance {

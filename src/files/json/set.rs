@@ -39,11 +39,15 @@ impl Override {
         (parts.and_then(read)).ok_or_else(|| typed_wrong(None, format!("{written:?}"), expected))
     }
 
+    /// Reads several.
+    pub(crate) fn parse_each(written: &[String]) -> Result<Vec<Self>> {
+        written.iter().map(|written| Self::parse(written)).collect()
+    }
+
     /// Refuses two overrides of one place, which `place` tells.
     pub(crate) fn check(written: &[String], place: impl Fn(&Self) -> JsonPath) -> Result<()> {
         let mut known: Vec<(JsonPath, Self)> = Vec::with_capacity(written.len());
-        for written in written {
-            let next = Self::parse(written)?;
+        for next in Self::parse_each(written)? {
             let place = place(&next);
             if let Some((_, known)) = known.iter().find(|(known, _)| *known == place) {
                 let found = format!("{:?} and {:?}", known.written, next.written);

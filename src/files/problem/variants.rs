@@ -198,16 +198,12 @@ pub(crate) fn changed_scenes(document: &Document) -> Result<Vec<SceneChanges<'_>
         return Ok(out);
     };
     let scope = Scope::of(document).key("identify");
-    let of = |key, sets: Vec<ChangesSpec>| {
-        let place = scope.key(key);
-        let each = sets.into_iter().enumerate();
-        each.map(move |(index, set)| (set, place.index(index).key("set")))
-            .collect::<Vec<_>>()
-    };
-    let recordings = spec.recordings.into_iter().map(|one| one.set).collect();
-    let candidates = spec.candidates.into_iter().map(|one| one.set).collect();
-    let all = [of("recordings", recordings), of("candidates", candidates)];
-    for (set, scope) in all.into_iter().flatten() {
+    let place = |key, index| scope.key(key).index(index).key("set");
+    let recordings = spec.recordings.into_iter().enumerate();
+    let recordings = recordings.map(|(index, one)| (one.set, place("recordings", index)));
+    let candidates = spec.candidates.into_iter().enumerate();
+    let candidates = candidates.map(|(index, one)| (one.set, place("candidates", index)));
+    for (set, scope) in recordings.chain(candidates) {
         if set.is_empty() || out.iter().any(|known| known.set == set) {
             continue;
         }
@@ -224,10 +220,13 @@ pub(crate) fn changed_scenes(document: &Document) -> Result<Vec<SceneChanges<'_>
 
 /// The identification that a problem asks for, if it does.
 fn identify(document: &Document) -> Result<Option<IdentifySpec>> {
-    match document.entry("identify") {
-        None => Ok(None),
-        Some(_) => Ok(document.parse::<ProblemSpec>()?.identify),
-    }
+    Ok(with_entry(document, "identify")?.and_then(|spec| spec.identify))
+}
+
+/// The problem, if it has an entry.
+fn with_entry(document: &Document, key: &str) -> Result<Option<ProblemSpec>> {
+    let entry = document.entry(key);
+    entry.map(|_| document.parse()).transpose()
 }
 
 impl SceneChanges<'_> {
@@ -283,7 +282,8 @@ pub(crate) fn disturbed(
     texts: [&str; 2],
     read: impl Fn(Document, &Changes<'_>) -> Result<(System, Task)>,
 ) -> Result<Vec<Disturbed>> {
-    let Some(spec) = disturbance(document)? else {
+    let simulate = with_entry(document, "simulate")?.and_then(|spec| spec.simulate);
+    let Some(spec) = simulate.and_then(|one| one.controller?.disturbance) else {
         return Ok(Vec::new());
     };
     let scope = Scope::of(document).key("simulate").key("controller");
@@ -316,15 +316,6 @@ pub(crate) fn disturbed(
         out.push(Disturbed { size, system, task });
     }
     Ok(out)
-}
-
-/// The disturbance that a problem names, if it does.
-fn disturbance(document: &Document) -> Result<Option<DisturbanceSpec>> {
-    if document.entry("simulate").is_none() {
-        return Ok(None);
-    }
-    let simulate = document.parse::<ProblemSpec>()?.simulate;
-    Ok(simulate.and_then(|one| one.controller?.disturbance))
 }
 
 fn sizes(spec: &DisturbanceSpec, scope: &Scope<'_>) -> Result<Vec<f64>> {

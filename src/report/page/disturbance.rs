@@ -9,15 +9,13 @@ use crate::report::tip_path;
 use crate::workflow::Tracked;
 use crate::workflow::closed_loop::DisturbedLoop;
 
-/// The part that is the problem itself.
-const WHOLE: f64 = 1.0;
-
 /// The chart of the parts; none where there are not several.
 pub(super) fn chart(parts: &[DisturbedLoop]) -> Option<Value> {
     let [first, _, ..] = parts else { return None };
     let count = first.closed.tracked.len();
     let panels: Vec<Value> = (0..count).flat_map(|place| panels(parts, place)).collect();
-    let whole = parts.iter().position(|part| part.size == WHOLE);
+    let mut each = parts.iter();
+    let whole = each.position(|part| part.size == DisturbedLoop::WHOLE);
     let sizes: Vec<f64> = parts.iter().map(|part| part.size).collect();
     (!panels.is_empty()).then(|| {
         json!({
