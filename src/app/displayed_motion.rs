@@ -174,19 +174,15 @@ fn tables(
         }
         name
     };
-    for column in table::columns(observations) {
-        let values = column.values();
-        let name = unique("trajectory", &column.heading);
-        arrays.array(&name, &[values.len()], values);
-    }
-    let intervals = trajectory.voltages.len();
-    for (i, heading) in table::control_headings(system).iter().enumerate() {
-        let value = |k: usize| match i {
-            0 | 1 => trajectory.times[k + i],
-            _ => trajectory.voltages[k][i - 2],
-        };
-        let name = unique("controls", heading);
-        arrays.array(&name, &[intervals], (0..intervals).map(value));
+    for (name, columns) in [
+        ("trajectory", table::columns(observations)),
+        ("controls", table::controls(trajectory, system)),
+    ] {
+        for column in columns {
+            let values = column.values();
+            let name = unique(name, &column.heading);
+            arrays.array(&name, &[values.len()], values);
+        }
     }
     Ok(arrays.finish()?.0)
 }

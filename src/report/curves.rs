@@ -6,7 +6,7 @@ use crate::report::axes::Extent;
 use crate::report::lines::{LinePlot, Series, over_time};
 use crate::report::origin::Origin;
 use crate::report::style;
-use crate::report::table::csv;
+use crate::report::table::{TableColumn, csv};
 use crate::workflow::Tracked;
 
 /// Steps over time in s: each value, of an interval and its inputs, from the start of the interval to the end.
@@ -105,10 +105,8 @@ impl OfUnits {
             (false, true) => of_second,
             (true, true) => self.of_both,
         };
-        plot(
-            label,
-            self.curves.into_iter().map(|(_, curve)| curve).collect(),
-        )
+        let curves = self.curves.into_iter().map(|(_, curve)| curve);
+        plot(label, curves.collect())
     }
 }
 
@@ -155,23 +153,22 @@ pub(super) fn deviations(times: &[f64], tracked: &[Tracked]) -> OfUnits {
 
 /// `tracking.csv`: one row per instant with each coordinate, its reference, and the deviation; none where nothing is followed.
 pub(super) fn tracking_csv(times: &[f64], tracked: &[Tracked], origin: &Origin) -> Option<String> {
-    let mut header = vec!["time [ms]".to_owned()];
-    let mut columns: Vec<&[f64]> = vec![times];
+    let mut columns = vec![TableColumn::new("time [ms]", times)];
     for one in tracked {
         let unit = match one.unit {
             "m" => "mm",
             unit => unit,
         };
+        let mut add = |name: String, values| {
+            columns.push(TableColumn::new(format!("{name} [{unit}]"), values));
+        };
         for path in &one.paths {
-            header.push(format!("{} [{unit}]", path.name));
-            header.push(format!("{}_reference [{unit}]", path.name));
-            columns.extend([&path.value[..], &path.reference[..]]);
+            add(path.name.clone(), &path.value);
+            add(format!("{}_reference", path.name), &path.reference);
         }
-        header.push(format!("{}_deviation [{unit}]", one.name));
-        columns.push(&one.deviation);
+        add(format!("{}_deviation", one.name), &one.deviation);
     }
-    let rows = (0..times.len()).map(|k| columns.iter().map(move |column| column[k]));
-    (!tracked.is_empty()).then(|| csv(&origin.line(), header.into_iter(), rows))
+    (!tracked.is_empty()).then(|| csv(&origin.line(), &columns))
 }
 
 /// The path that a marker follows in a plane, where it follows one in both directions.

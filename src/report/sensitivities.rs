@@ -8,7 +8,7 @@ use crate::report::curves;
 use crate::report::lines::{LinePlot, Series};
 use crate::report::origin::Origin;
 use crate::report::style::{self, Dash};
-use crate::report::table::csv;
+use crate::report::table::{TableColumn, csv};
 use crate::sensitivity::Sensitivity;
 
 /// `sensitivities.csv`: one row per instant with the derivatives of inputs, in the interval that begins there, of joint coordinates and of places of
@@ -19,8 +19,7 @@ pub fn table(
     list: &[Sensitivity],
     origin: &Origin,
 ) -> String {
-    let mut header = vec!["time [ms]".to_owned()];
-    let mut columns: Vec<Vec<f64>> = vec![trajectory.times.clone()];
+    let mut columns = vec![TableColumn::new("time [ms]", &trajectory.times)];
     let sources = system.sources();
     let joints = trajectory.coordinates(system);
     for one in list {
@@ -30,14 +29,12 @@ pub fn table(
                 "" => of.to_owned(),
                 symbol => format!("{of}/({symbol})"),
             };
-            header.push(format!("d {name} / d {} [{by}]", one.varied.name));
-            columns.push(values.iter().map(|value| value / unit.factor).collect());
+            let heading = format!("d {name} / d {} [{by}]", one.varied.name);
+            let values: Vec<f64> = values.iter().map(|value| value / unit.factor).collect();
+            columns.push(TableColumn::new(heading, values));
         };
-        for (source, named) in sources
-            .iter()
-            .enumerate()
-            .filter(|(_, source)| source.acts())
-        {
+        let acting = sources.iter().enumerate();
+        for (source, named) in acting.filter(|(_, source)| source.acts()) {
             let by = one.voltages.iter().map(|row| row[source]);
             add(&named.name, named.kind.unit(), by.collect());
         }
@@ -45,26 +42,19 @@ pub fn table(
             let by = one.joints.iter().map(|row| row[j]);
             add(&joint.name, joint.unit, by.collect());
         }
-        for (m, marker) in system
-            .markers
-            .iter()
-            .enumerate()
-            .filter(|_| !one.markers.is_empty())
-        {
+        let markers = system.markers.iter().enumerate();
+        for (m, marker) in markers.filter(|_| !one.markers.is_empty()) {
             for (axis, letter) in ["x", "y", "z"].into_iter().enumerate() {
                 let by = one.markers.iter().map(|row| row[m][axis]);
                 add(&format!("{}_{letter}", marker.name), "mm", by.collect());
             }
         }
     }
-    let cell = |column: &Vec<f64>, k: usize| column.get(k).copied().unwrap_or(f64::NAN);
-    let rows =
-        (0..trajectory.times.len()).map(|k| columns.iter().map(move |column| cell(column, k)));
     let line = format!(
         "{}; derivatives of an optimum, of inputs in the interval that begins at the time",
         origin.line()
     );
-    csv(&line, header.into_iter(), rows)
+    csv(&line, &columns)
 }
 
 /// Changes of the objective with the tolerances of numbers, to first order: bars under their names, the longest on top; none without tolerances.

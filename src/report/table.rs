@@ -1,5 +1,6 @@
 //! Tables: observations and voltages as CSV, and aligned text.
 
+use std::borrow::Cow;
 use std::fmt::Write;
 
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
@@ -12,12 +13,21 @@ pub struct TableColumn<'a> {
     /// Name and unit: `tip_x [mm]`.
     pub heading: String,
     /// Numbers as they are inside.
-    values: &'a [f64],
+    values: Cow<'a, [f64]>,
     /// Factor from the unit inside to the unit in the heading.
     factor: f64,
 }
 
-impl TableColumn<'_> {
+impl<'a> TableColumn<'a> {
+    /// Numbers in the unit of the heading.
+    pub(super) fn new(heading: impl Into<String>, values: impl Into<Cow<'a, [f64]>>) -> Self {
+        Self {
+            heading: heading.into(),
+            values: values.into(),
+            factor: 1.0,
+        }
+    }
+
     /// The numbers in the unit of the heading.
     pub fn values(&self) -> impl ExactSizeIterator<Item = f64> + '_ {
         self.values.iter().map(|value| self.factor * value)
@@ -41,45 +51,36 @@ fn headed(Column { name, unit, values }: &Column) -> TableColumn<'_> {
         unit => format!("{name} [{unit}]"),
     };
     TableColumn {
-        heading,
-        values,
         factor,
+        ..TableColumn::new(heading, values)
     }
 }
 
 /// `trajectory.csv`: one row per instant, headers `name [unit]`; each number reads back identical, and where there is none
 /// the cell is empty.
 pub fn trajectory_csv(observations: &Observations, origin: &Origin) -> String {
-    let columns = columns(observations);
-    let rows = columns.iter().map(|c| c.values.len()).max().unwrap_or(0);
     let line = format!("{}; every column at the time of its row", origin.line());
-    let cell = |column: &TableColumn<'_>, k: usize| {
-        column.factor * column.values.get(k).copied().unwrap_or(f64::NAN)
-    };
-    csv(
-        &line,
-        columns.iter().map(|column| column.heading.clone()),
-        (0..rows).map(|k| columns.iter().map(move |column| cell(column, k))),
-    )
+    csv(&line, &columns(observations))
 }
 
-/// The headings of `controls.csv`: start and end of an interval in ms, the voltage of each source in V, and each load.
-pub fn control_headings(system: &System) -> Vec<String> {
-    let ends = ["start [ms]", "end [ms]"].map(str::to_owned);
-    let sources = system.sources().into_iter();
-    let inputs = sources.map(|source| format!("{} [{}]", source.name, source.kind.unit()));
+/// The columns of `controls.csv`: start and end of an interval in ms, the voltage of each source in V, and each load.
+pub fn controls<'a>(trajectory: &'a Trajectory, system: &System) -> Vec<TableColumn<'a>> {
+    let (times, rows) = (&trajectory.times, &trajectory.voltages);
+    let last = times.len() - 1;
+    let ends = [("start [ms]", &times[..last]), ("end [ms]", &times[1..])];
+    let ends = ends.map(|(heading, values)| TableColumn::new(heading, values));
+    let inputs = system.sources().into_iter().enumerate();
+    let inputs = inputs.map(|(i, source)| {
+        let heading = format!("{} [{}]", source.name, source.kind.unit());
+        let values: Vec<f64> = rows.iter().map(|row| row[i]).collect();
+        TableColumn::new(heading, values)
+    });
     ends.into_iter().chain(inputs).collect()
 }
 
 /// `controls.csv`: one row per interval.
 pub fn controls_csv(trajectory: &Trajectory, system: &System, origin: &Origin) -> String {
-    let ends = trajectory.times.windows(2);
-    csv(
-        &origin.line(),
-        control_headings(system).into_iter(),
-        ends.zip(&trajectory.voltages)
-            .map(|(ends, voltages)| ends.iter().chain(voltages).copied()),
-    )
+    csv(&origin.line(), &controls(trajectory, system))
 }
 
 /// A cell of a table that is written to a file and shown as text: in full, and rounded.
@@ -131,39 +132,30 @@ pub fn aligned(rows: &[Vec<String>]) -> String {
     };
     let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
     let widths: Vec<_> = (0..columns).map(width).collect();
-    let mut text = String::new();
-    for row in rows {
-        let mut line = String::new();
-        for (column, (cell, &width)) in row.iter().zip(&widths).enumerate() {
-            match column {
-                0 => write!(line, "{cell:<width$}"),
-                _ => write!(line, "  {cell:>width$}"),
-            }
-            .expect("writing to a string does not fail");
-        }
-        text.push_str(line.trim_end());
-        text.push('\n');
-    }
-    text
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).enumerate();
+        let cells = cells.map(|(column, (cell, &width))| match column {
+            0 => format!("{cell:<width$}"),
+            _ => format!("  {cell:>width$}"),
+        });
+        cells.collect::<String>().trim_end().to_owned() + "\n"
+    };
+    rows.iter().map(line).collect()
 }
 
-/// Rows of numbers as CSV under a line and a header; empty cells where there is no number.
-pub(super) fn csv<R>(
-    line: &str,
-    header: impl Iterator<Item = String>,
-    rows: impl Iterator<Item = R>,
-) -> String
-where
-    R: Iterator<Item = f64>,
-{
-    let mut text = csv_under(line, [header.collect()].into_iter());
-    for row in rows {
-        for (column, value) in row.enumerate() {
-            if column > 0 {
+/// Columns of numbers as CSV under a line and their headings; empty cells where there is no number.
+pub(super) fn csv(line: &str, columns: &[TableColumn<'_>]) -> String {
+    let headings = columns.iter().map(|column| column.heading.clone());
+    let mut text = csv_under(line, [headings.collect()].into_iter());
+    let lengths = columns.iter().map(|column| column.values.len());
+    for k in 0..lengths.max().unwrap_or(0) {
+        for (index, column) in columns.iter().enumerate() {
+            if index > 0 {
                 text.push(',');
             }
+            let value = column.values.get(k).map(|value| column.factor * value);
             // The shortest decimal that reads back as the same number.
-            if value.is_finite() {
+            if let Some(value) = value.filter(|value| value.is_finite()) {
                 write!(text, "{value:?}").expect("writing to a string does not fail");
             }
         }

@@ -76,20 +76,16 @@ fn of_inputs(run: &Run<'_>, kind: InputKind) -> Option<Value> {
 /// Returns the parts on which a source acts: the joint between the bodies of a muscle, or these; the block of an electrode.
 fn pair(system: &System, source: usize) -> String {
     let Some(muscle) = system.muscles.get(source) else {
-        let sources = system.sources();
-        let name = &sources[source].name;
-        return name
-            .rsplit_once('.')
-            .map_or(name.clone(), |(block, _)| block.to_owned());
+        let name = &system.sources()[source].name;
+        let block = name.rsplit_once('.').map(|(block, _)| block);
+        return block.unwrap_or(name).to_owned();
     };
     let ends = [muscle.from.body, muscle.to.body];
     let joins = |parent: Option<usize>, child: usize| {
         [[parent, Some(child)], [Some(child), parent]].contains(&ends)
     };
-    let joint = system
-        .joints
-        .iter()
-        .find(|joint| joins(joint.parent, joint.child));
+    let mut joints = system.joints.iter();
+    let joint = joints.find(|joint| joins(joint.parent, joint.child));
     let body = |body: Option<usize>| body.map_or("ground", |b| system.bodies[b].name.as_str());
     match joint {
         Some(joint) => joint.name.clone(),

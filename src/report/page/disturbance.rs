@@ -55,14 +55,8 @@ fn panels(parts: &[DisturbedLoop], place: usize) -> Vec<Value> {
         _ => vec![panel_of(parts, place, name, plot(name), &coordinate, true)],
     };
     let title = format!("{name}, distance from the reference");
-    panels.push(panel_of(
-        parts,
-        place,
-        &title,
-        plot("deviation"),
-        &deviation,
-        false,
-    ));
+    let plot = plot("deviation");
+    panels.push(panel_of(parts, place, &title, plot, &deviation, false));
     panels
 }
 
