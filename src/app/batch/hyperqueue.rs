@@ -6,7 +6,7 @@
 //!
 //! What is kept of a job until all its ends are collected is its name, and the folder of each of its tasks.
 
-use crate::app::batch::launch::{Batch, RunEnd, Told, words};
+use crate::app::batch::launch::{Batch, EndObserver, RunEnd, words};
 use crate::app::error::CommandError;
 use crate::app::kept::record::{make_folder, parsed};
 use crate::app::request::CommandInput;
@@ -31,7 +31,7 @@ const PATIENCE: Duration = Duration::from_millis(200);
 const SHARE: u32 = 10;
 
 /// Runs all of a batch.
-pub(super) fn run_all(batch: &Batch<'_>, told: Told<'_>) -> Result<(), CommandError> {
+pub(super) fn run_all(batch: &Batch<'_>, told: EndObserver<'_>) -> Result<(), CommandError> {
     let mut open: BTreeMap<usize, &CommandInput> = batch.runs.iter().enumerate().collect();
     if let Some(job) = Job::earlier(batch.folder)? {
         follow(batch, &job, &mut open, told)?;
@@ -55,7 +55,7 @@ fn follow(
     batch: &Batch<'_>,
     job: &Job,
     open: &mut BTreeMap<usize, &CommandInput>,
-    told: Told<'_>,
+    told: EndObserver<'_>,
 ) -> Result<(), CommandError> {
     let mut left = job.tasks_of(open);
     let mut is_cancelled = false;

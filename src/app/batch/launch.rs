@@ -216,7 +216,7 @@ pub(super) struct RunEnd {
 }
 
 /// Takes the end of the solve with an index; none where there was no time for it.
-pub(super) type Told<'a> = &'a mut dyn FnMut(usize, Option<RunEnd>) -> ControlFlow<()>;
+pub(super) type EndObserver<'a> = &'a mut dyn FnMut(usize, Option<RunEnd>) -> ControlFlow<()>;
 
 /// A solve that has ended, with what it left in its folder.
 #[derive(Debug)]

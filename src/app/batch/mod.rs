@@ -11,7 +11,7 @@ use crate::report::atomic::WriteError;
 use crate::stop;
 use crate::workflow::parallel_map::{cores, parallel_map};
 pub(crate) use launch::{Batch, Ended, task_runs_at_once};
-use launch::{RunEnd, Running, Told, launch};
+use launch::{EndObserver, RunEnd, Running, launch};
 pub use launch::{RunIn, end_with_parent};
 #[cfg(unix)]
 use rustix::process::{Pid, Signal, kill_process};
@@ -74,7 +74,11 @@ pub(crate) fn check_run_in(run_in: RunIn) -> Result<(), CommandError> {
 }
 
 /// Runs all of a batch in threads of this process, at most this number in parallel.
-fn run_in_threads(batch: &Batch<'_>, threads: usize, told: Told<'_>) -> Result<(), CommandError> {
+fn run_in_threads(
+    batch: &Batch<'_>,
+    threads: usize,
+    told: EndObserver<'_>,
+) -> Result<(), CommandError> {
     let is_over = AtomicBool::new(false);
     let solve = |run: &CommandInput| {
         let command = batch.command(run);
@@ -134,7 +138,7 @@ impl Drop for All {
 }
 
 /// Runs all of a batch in processes.
-fn run_in_processes(batch: &Batch<'_>, told: Told<'_>) -> Result<(), CommandError> {
+fn run_in_processes(batch: &Batch<'_>, told: EndObserver<'_>) -> Result<(), CommandError> {
     let mut waiting = batch.runs.iter().enumerate().peekable();
     let mut running = All(Vec::new());
     let mut is_over = false;

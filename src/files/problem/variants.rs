@@ -113,7 +113,7 @@ fn one<'a>(
     })
 }
 
-/// What is written under a key of an object at a place, where something is.
+/// The value under a key of an object at a place; none where there is none, or `null`.
 fn written<T: DeserializeOwned>(
     object: Json<'_>,
     key: &str,
