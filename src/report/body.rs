@@ -21,11 +21,16 @@ pub enum Tint {
 }
 
 impl Tint {
-    fn colour(self) -> Colour {
+    /// The colour of a part that has its own in the deflected state.
+    pub(super) fn ink(self, coloured: Colour) -> Colour {
         match self {
             Self::Reference => style::REFERENCE,
-            Self::Coloured => style::BODY,
+            Self::Coloured => coloured,
         }
+    }
+
+    fn colour(self) -> Colour {
+        self.ink(style::BODY)
     }
 
     fn edge(self) -> Colour {

@@ -1,10 +1,10 @@
 //! Curves over time of a motion, which look the same in figures and charts: inputs, joint coordinates, deviations, charges and energies.
 
-use crate::dynamics::trajectory::{Observations, Trajectory};
-use crate::model::system::{InputKind, System};
+use crate::dynamics::trajectory::{Column, Trajectory};
+use crate::model::system::InputKind;
+use crate::report::Run;
 use crate::report::axes::Extent;
 use crate::report::lines::{LinePlot, Series, over_time};
-use crate::report::origin::Origin;
 use crate::report::style;
 use crate::report::table::{TableColumn, csv};
 use crate::workflow::Tracked;
@@ -23,18 +23,14 @@ pub(super) fn steps(
 }
 
 /// The curves of all sources of a kind, each with its number: of voltages agonists solid, antagonists dashed.
-pub(super) fn inputs(
-    system: &System,
-    trajectory: &Trajectory,
-    kind: InputKind,
-) -> Vec<(usize, Series)> {
-    let (_, unit) = kind.counted();
+pub(super) fn inputs(run: &Run<'_>, kind: InputKind) -> Vec<(usize, Series)> {
+    let (system, (_, unit)) = (run.system, kind.counted());
     let sources = system.sources().into_iter().enumerate();
     // A muscle whose charge is given takes no voltage.
     let curve = sources.filter(|(i, source)| source.kind == kind && !system.is_charged(*i));
     let curve = curve.map(|(i, source)| {
         let (colour, dash) = style::muscle(i);
-        let steps = steps(trajectory, |_, row| row[i] / unit);
+        let steps = steps(run.trajectory, |_, row| row[i] / unit);
         (i, Series::curve(&source.name, steps, colour).dashed(dash))
     });
     curve.collect()
@@ -59,18 +55,13 @@ pub(super) fn input_names(kind: InputKind) -> (&'static str, &'static str) {
 }
 
 /// `voltages.svg`, `forces.svg`, `body_forces.svg` …: the inputs of a kind over time in s, where there are any.
-pub fn input_svg(
-    system: &System,
-    trajectory: &Trajectory,
-    kind: InputKind,
-    origin: &Origin,
-) -> Option<(&'static str, String)> {
-    let curves = inputs(system, trajectory, kind).into_iter();
+pub fn input_svg(run: &Run<'_>, kind: InputKind) -> Option<String> {
+    let curves = inputs(run, kind).into_iter();
     let mut plot = plot(input_label(kind), curves.map(|(_, curve)| curve).collect())?;
     if kind == InputKind::Voltage {
         plot.y.extent = Extent::FromZero;
     }
-    Some((input_names(kind).0, plot.svg(origin)))
+    Some(plot.svg(run.origin))
 }
 
 /// A plot over time in s; none without curves.
@@ -119,7 +110,10 @@ fn shown(unit: &str) -> f64 {
 }
 
 /// Joint coordinates over time in s: angles in degrees and displacements in mm.
-pub(super) fn joints(system: &System, trajectory: &Trajectory) -> OfUnits {
+pub(super) fn joints(run: &Run<'_>) -> OfUnits {
+    let Run {
+        system, trajectory, ..
+    } = *run;
     let coordinates = trajectory.coordinates(system).into_iter().enumerate();
     let curve = coordinates.map(|(i, coordinate)| {
         let unit = coordinate.unit;
@@ -138,10 +132,10 @@ pub(super) fn joints(system: &System, trajectory: &Trajectory) -> OfUnits {
 }
 
 /// Deviations of markers and joints from their references over time in s: distances in mm and angles in degrees.
-pub(super) fn deviations(times: &[f64], tracked: &[Tracked]) -> OfUnits {
-    let curves = tracked.iter().enumerate().map(|(i, one)| {
+pub(super) fn deviations(run: &Run<'_>) -> OfUnits {
+    let curves = run.tracked.iter().enumerate().map(|(i, one)| {
         let values = one.deviation.iter().map(|e| shown(one.unit) * e);
-        let points = over_time(times, values);
+        let points = over_time(&run.trajectory.times, values);
         (one.unit, Series::curve(&one.name, points, style::hue(i)))
     });
     OfUnits {
@@ -152,7 +146,8 @@ pub(super) fn deviations(times: &[f64], tracked: &[Tracked]) -> OfUnits {
 }
 
 /// `tracking.csv`: one row per instant with each coordinate, its reference, and the deviation; none where nothing is followed.
-pub(super) fn tracking_csv(times: &[f64], tracked: &[Tracked], origin: &Origin) -> Option<String> {
+pub(super) fn tracking_csv(run: &Run<'_>) -> Option<String> {
+    let (times, tracked) = (&run.trajectory.times, run.tracked);
     let mut columns = vec![TableColumn::new("time [ms]", times)];
     for one in tracked {
         let unit = match one.unit {
@@ -168,7 +163,7 @@ pub(super) fn tracking_csv(times: &[f64], tracked: &[Tracked], origin: &Origin) 
         }
         add(format!("{}_deviation", one.name), &one.deviation);
     }
-    (!tracked.is_empty()).then(|| csv(&origin.line(), &columns))
+    (!tracked.is_empty()).then(|| csv(&run.origin.line(), &columns))
 }
 
 /// The path that a marker follows in a plane, where it follows one in both directions.
@@ -187,13 +182,8 @@ pub(super) fn reference(
 
 /// Curves by the names of their sources in columns with an ending; each has the name and the look of the voltage of its source. What no voltage
 /// drives, such as a grounded electrode, has a look of its own.
-pub(super) fn of_sources(
-    system: &System,
-    trajectory: &Trajectory,
-    observations: &Observations,
-    end: &str,
-) -> Vec<Series> {
-    let sources = system.sources();
+pub(super) fn of_sources(run: &Run<'_>, end: &str) -> Vec<Series> {
+    let sources = run.system.sources();
     let mut others = sources.len().div_ceil(2)..;
     let mut look = |name: &str, points| {
         let is = |source: &str| source.replace('.', "_") == name.replace('.', "_");
@@ -208,22 +198,16 @@ pub(super) fn of_sources(
             }
         }
     };
-    let columns = observations.columns.iter();
+    let columns = run.observations.columns.iter();
     let columns = columns.filter(|column| column.name != "mechanical_work");
-    let named = columns.filter_map(|column| {
-        let points = over_time(&trajectory.times, column.values.iter().copied());
-        Some(look(column.name.strip_suffix(end)?, points))
-    });
+    let named = columns
+        .filter_map(|column| Some(look(column.name.strip_suffix(end)?, points(run, column))));
     named.collect()
 }
 
 /// The observed charges of electrodes and muscles over time in s, in the unit that suits the largest, and the label of their axis.
-pub(super) fn charges(
-    system: &System,
-    trajectory: &Trajectory,
-    observations: &Observations,
-) -> (&'static str, Vec<Series>) {
-    let mut charges = of_sources(system, trajectory, observations, "_charge");
+pub(super) fn charges(run: &Run<'_>) -> (&'static str, Vec<Series>) {
+    let mut charges = of_sources(run, "_charge");
     let values = charges.iter().flat_map(|series| &series.points);
     let largest = values.map(|p| p[1].abs()).filter(|q| q.is_finite());
     let (label, factor) = match largest.fold(0.0, f64::max) {
@@ -238,14 +222,23 @@ pub(super) fn charges(
 }
 
 /// The observed columns that are energies of the system, over time in s; in N mm, which is mJ.
-pub(super) fn energies(trajectory: &Trajectory, observations: &Observations) -> Vec<Series> {
-    let columns = observations.columns.iter();
-    let energies = columns.filter(|column| is_energy(&column.name)).enumerate();
-    let curve = energies.map(|(i, column)| {
-        let points = over_time(&trajectory.times, column.values.iter().copied());
-        Series::curve(column.name.replace('_', " "), points, style::hue(i))
-    });
+pub(super) fn energies(run: &Run<'_>) -> Vec<Series> {
+    let name = |column: &Column| is_energy(&column.name).then(|| column.name.replace('_', " "));
+    named(run, &name)
+}
+
+/// The observed columns that have a name, each in a colour of its own.
+pub(super) fn named(run: &Run<'_>, name: &dyn Fn(&Column) -> Option<String>) -> Vec<Series> {
+    let columns = run.observations.columns.iter();
+    let named = columns.filter_map(|column| Some((name(column)?, points(run, column))));
+    let named = named.enumerate();
+    let curve = named.map(|(i, (name, points))| Series::curve(name, points, style::hue(i)));
     curve.collect()
+}
+
+/// An observed column over time in s.
+fn points(run: &Run<'_>, column: &Column) -> Vec<[f64; 2]> {
+    over_time(&run.trajectory.times, column.values.iter().copied())
 }
 
 /// Returns true if a column is an energy of the system, not of one of many sources.

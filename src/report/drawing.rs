@@ -1,13 +1,13 @@
-//! The system in space at an instant on a sheet: bodies as glass around muscles, joints and elastic blocks; what frames it, and lines of components.
+//! The system in space at an instant on a sheet: bodies as glass around muscles, joints and elastic blocks; and what frames it.
 
 use crate::dynamics::trajectory::Trajectory;
 use crate::mesh::triangulated::circle;
-use crate::model::Component;
 use crate::model::system::{Attachment, Fidelity, Joint, System};
+use crate::report::Run;
 use crate::report::body::{Tint, draw_back, draw_front, extent_points};
 use crate::report::canvas::{Canvas, CanvasPoint, Stroke};
-use crate::report::load_arrows::LoadArrows;
-use crate::report::skins::{Paint, Skin, Skins, draw_skin, shown};
+use crate::report::moving_lines::{MovingLine, arrows, ties};
+use crate::report::skins::{Paint, Skin, draw_skin, shown};
 use crate::report::solids::{Prism, slice};
 use crate::report::style::{self, Colour};
 use crate::report::view::View;
@@ -43,9 +43,7 @@ impl Inside<'_> {
 
 /// Parts that are drawn, and their view and colours.
 pub(super) struct Drawing<'a> {
-    pub(super) system: &'a System,
-    pub(super) trajectory: &'a Trajectory,
-    pub(super) skins: &'a Skins,
+    pub(super) run: Run<'a>,
     pub(super) view: View,
     /// Voltages in V that colour the muscles.
     pub(super) voltages: Vec<f64>,
@@ -67,18 +65,22 @@ impl Drawing<'_> {
     /// Bodies as glass around muscles and joints, far parts first.
     pub(super) fn instant(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
         let view = &self.view;
-        let poses = &self.trajectory.poses[k];
-        let mut bodies: Vec<_> = self.system.bodies.iter().zip(poses).collect();
+        let Run {
+            system,
+            trajectory,
+            skins,
+            ..
+        } = self.run;
+        let poses = &trajectory.poses[k];
+        let mut bodies: Vec<_> = system.bodies.iter().zip(poses).collect();
         bodies.sort_by(|(_, a), (_, b)| view.depth(&a.centre).total_cmp(&view.depth(&b.centre)));
         for (body, pose) in &bodies {
             draw_back(canvas, view, &body.shape, pose, tint);
         }
-        let prisms = lumped(self.system).map(|i| {
-            let prism = Prism::muscle(self.system, self.trajectory, k, i);
-            Inside::Muscle(i, prism)
-        });
-        let position = self.skins.position(k);
-        let skins = self.skins.list.iter();
+        let prisms = lumped(system);
+        let prisms = prisms.map(|i| Inside::Muscle(i, Prism::muscle(system, trajectory, k, i)));
+        let position = skins.position(k);
+        let skins = skins.list.iter();
         let skins = skins.map(|skin| Inside::Skin(skin, position));
         let mut inside: Vec<_> = prisms
             .chain(skins)
@@ -101,12 +103,12 @@ impl Drawing<'_> {
         };
         behind.iter().for_each(|(_, inside)| draw(inside));
         self.joints(canvas, k, tint);
-        self.ties(canvas, k, tint);
+        self.lines(canvas, &ties(&self.run, &[k]), 1.0, tint);
         before.iter().for_each(|(_, inside)| draw(inside));
         for (body, pose) in &bodies {
             draw_front(canvas, view, &body.shape, pose, tint);
         }
-        self.loads(canvas, k, tint);
+        self.lines(canvas, &arrows(&self.run, &[k]), 1.4, tint);
     }
 
     /// Colour of a muscle by its voltage.
@@ -119,7 +121,7 @@ impl Drawing<'_> {
 
     /// The surfaces of blocks in the reference configuration.
     pub(super) fn reference_skins(&self, canvas: &Canvas<'_>) {
-        for skin in &self.skins.list {
+        for skin in &self.run.skins.list {
             draw_skin(canvas, &self.view, skin, &skin.reference, Paint::Reference);
         }
     }
@@ -169,53 +171,35 @@ impl Drawing<'_> {
             body: Some(j.child),
             at: j.at,
         };
-        let joints = self.system.joints.iter();
+        let Run {
+            system, trajectory, ..
+        } = self.run;
+        let joints = system.joints.iter();
         joints
-            .map(|j| self.trajectory.point(k, &reference(j), self.system))
+            .map(|j| trajectory.point(k, &reference(j), system))
             .collect()
     }
 
     /// A line through the joints of each body, and a disc at each joint.
     fn joints(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
-        let ink = match tint {
-            Tint::Reference => style::REFERENCE,
-            Tint::Coloured => style::INK.mix(style::PAPER, 0.25),
-        };
+        let ink = Stroke::solid(tint.ink(style::INK.mix(style::PAPER, 0.25)), 1.1);
         let places = self.view.places(&self.joint_places(k));
-        for (joint, place) in self.system.joints.iter().zip(&places) {
-            let centre = self.trajectory.poses[k][joint.child].centre;
-            canvas.line(&[*place, self.view.place(&centre)], Stroke::solid(ink, 1.1));
-            if let Some(parent) = joint.parent {
-                let centre = self.trajectory.poses[k][parent].centre;
-                canvas.line(&[*place, self.view.place(&centre)], Stroke::solid(ink, 1.1));
+        for (joint, place) in self.run.system.joints.iter().zip(&places) {
+            for body in [Some(joint.child), joint.parent].into_iter().flatten() {
+                let centre = self.run.trajectory.poses[k][body].centre;
+                canvas.line(&[*place, self.view.place(&centre)], ink);
             }
         }
         for place in places {
-            canvas.disc(place, 2.6, style::PAPER, Stroke::solid(ink, 1.1));
+            canvas.disc(place, 2.6, style::PAPER, ink);
         }
     }
 
-    /// Springs, tendons and other components.
-    fn ties(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
-        let ink = match tint {
-            Tint::Reference => style::REFERENCE,
-            Tint::Coloured => style::TIE,
-        };
-        for line in component_lines(self.system, self.trajectory, k) {
-            canvas.line(&self.view.places(&line), Stroke::solid(ink, 1.0));
-        }
-    }
-
-    /// Arrows of the loads.
-    fn loads(&self, canvas: &Canvas<'_>, k: usize, tint: Tint) {
-        let arrows = LoadArrows::new(self.system, self.trajectory, self.skins);
-        for (source, load) in arrows.loads() {
-            let ink = match tint {
-                Tint::Reference => style::REFERENCE,
-                Tint::Coloured => style::muscle(source).0,
-            };
-            let arrow = arrows.arrow(source, load, k);
-            canvas.line(&self.view.places(&arrow), Stroke::solid(ink, 1.4));
+    /// Springs, tendons and other components, or arrows of loads, at one instant.
+    fn lines(&self, canvas: &Canvas<'_>, lines: &[MovingLine<'_>], width: f64, tint: Tint) {
+        for line in lines {
+            let stroke = Stroke::solid(tint.ink(line.colour), width);
+            canvas.line(&self.view.places(&line.places[0]), stroke);
         }
     }
 
@@ -246,78 +230,29 @@ pub(super) fn marker_colour(marker: usize, count: usize) -> Colour {
     }
 }
 
-/// Turns of a spring.
-const TURNS: usize = 8;
-/// Points of a turn.
-const PER_TURN: usize = 14;
-/// Radius of a spring, as a part of its length in the reference configuration.
-const RADIUS: f64 = 0.06;
-/// Straight ends of a spring, as parts of its length.
-const END: f64 = 0.12;
-
-/// The line of each component at an instant, in mm.
-pub(super) fn component_lines(
-    system: &System,
-    trajectory: &Trajectory,
-    k: usize,
-) -> Vec<Vec<Vector3<f64>>> {
-    let line = |component: &dyn Component| {
-        let points = component.points();
-        let at = points.iter().map(|p| trajectory.point(k, p, system));
-        let at: Vec<_> = at.collect();
-        match at[..] {
-            [from, to] if component.is_coiled() => {
-                coil(&from, &to, RADIUS * (points[1].at - points[0].at).norm())
-            }
-            _ => at,
-        }
-    };
-    system.components.iter().map(line).collect()
-}
-
-/// A helix between two points, with straight ends.
-fn coil(from: &Vector3<f64>, to: &Vector3<f64>, radius: f64) -> Vec<Vector3<f64>> {
-    let span = to - from;
-    let least = span.iamin();
-    let Some(across) = span.cross(&Vector3::ith(least, 1.0)).try_normalize(0.0) else {
-        return vec![*from, *to];
-    };
-    let other = span.normalize().cross(&across);
-    let count = TURNS * PER_TURN;
-    let turn = |i: usize| {
-        let s = i as f64 / count as f64;
-        let angle = std::f64::consts::TAU * TURNS as f64 * s;
-        // The radius grows from the axis and goes back to it within half a turn.
-        let grown = (2.0 * TURNS as f64 * s.min(1.0 - s)).min(1.0);
-        let out = across * angle.cos() + other * angle.sin();
-        from + span * (END + (1.0 - 2.0 * END) * s) + out * (radius * grown)
-    };
-    let turns = (0..=count).map(turn);
-    [*from].into_iter().chain(turns).chain([*to]).collect()
-}
-
 /// Points in mm whose outline is that of all that is seen over a motion.
-pub(super) fn points(system: &System, trajectory: &Trajectory, skins: &Skins) -> Vec<Vector3<f64>> {
+pub(super) fn points(run: &Run<'_>) -> Vec<Vector3<f64>> {
+    let Run {
+        system,
+        trajectory,
+        skins,
+        ..
+    } = *run;
     let mut points = ground_plate(system);
-    let arrows = LoadArrows::new(system, trajectory, skins);
-    for k in shown(&trajectory.times, 1) {
+    let instants = shown(&trajectory.times, 1);
+    for &k in &instants {
         for (body, pose) in system.bodies.iter().zip(&trajectory.poses[k]) {
             points.extend(extent_points(&body.shape, pose));
         }
         for i in lumped(system) {
             points.extend(Prism::muscle(system, trajectory, k, i).corners());
         }
-        points.extend(component_lines(system, trajectory, k).into_iter().flatten());
-        let arrow = |(source, load)| arrows.arrow(source, load, k);
-        points.extend(arrows.loads().flat_map(arrow));
     }
-    points.extend(
-        skins
-            .list
-            .iter()
-            .flat_map(|skin| skin.places.iter().flatten()),
-    );
-    points.extend(trajectory.marks.iter().flatten());
+    let lines = ties(run, &instants).into_iter();
+    let lines = lines.chain(arrows(run, &instants));
+    points.extend(lines.flat_map(|line| line.places).flatten());
+    let corners = skins.list.iter().flat_map(|skin| &skin.places);
+    points.extend(corners.chain(&trajectory.marks).flatten());
     points
 }
 

@@ -9,7 +9,7 @@ pub mod file_set;
 pub mod gltf;
 pub mod legend;
 pub mod lines;
-mod load_arrows;
+mod moving_lines;
 pub mod origin;
 pub mod page;
 pub mod paraview;
@@ -65,7 +65,7 @@ fn write(
     texts: Vec<(&str, String)>,
 ) -> Result<(), WriteError> {
     if run.figures.parts {
-        parts::write(files, run.system, run.trajectory, run.origin)?;
+        parts::write(files, run)?;
     }
     let mut texts = texts.into_iter();
     texts.try_for_each(|(name, text)| files.add(name, text.as_bytes()))?;
@@ -80,54 +80,43 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
     let Run {
         system,
         trajectory,
-        skins,
-        observations,
         origin,
-        tracked,
-        waypoints,
         ..
     } = *run;
-    let view = run.figures.view;
-    let coloured = &*solids::coloured(system, trajectory, observations);
-    let mut motions: Vec<_> = run.comparison.into_iter().collect();
-    motions.push((run.name, trajectory));
-    let times = &trajectory.times;
+    let in_space = &Run {
+        trajectory: &*solids::coloured(system, trajectory, run.observations),
+        ..*run
+    };
     let drawn = |plot: Option<LinePlot>| Some(plot?.svg(origin));
-    let trajectory_csv = || Some(table::trajectory_csv(run.tabulated, origin));
-    let controls_csv = || Some(table::controls_csv(trajectory, system, origin));
-    let configuration = || Some(pose::svg(system, coloured, skins, &run.shown(), origin));
-    let animation = || gltf::text(system, coloured, skins, origin);
-    let animation = || run.figures.gltf.then(animation).flatten();
-    let stills = || pose::snapshots(system, coloured, skins, view, origin);
     let inputs = InputKind::ALL.map(|kind| {
-        let svg = move || Some(curves::input_svg(system, trajectory, kind, origin)?.1);
+        let svg = move || curves::input_svg(run, kind);
         (curves::input_names(kind).0, svg)
     });
-    let paths = || tip_path::svg(system, &motions, tracked, waypoints, view, origin);
-    let paths = || (!system.markers.is_empty()).then(paths);
-    let joints = || drawn(curves::joints(system, trajectory).plot());
-    let charges = || {
-        let (label, charges) = curves::charges(system, trajectory, observations);
-        drawn(curves::plot(label, charges).filter(|_| !skins.list.is_empty()))
-    };
-    let energies = || curves::energies(trajectory, observations);
-    let energies = || drawn(curves::plot("energy [mJ]", energies()));
-    let tracking_csv = || curves::tracking_csv(times, tracked, origin);
-    let tracking = || drawn(curves::deviations(times, tracked).plot());
     let before: [(&'static str, Maker<'_>); 5] = [
-        ("trajectory.csv", &trajectory_csv),
-        ("controls.csv", &controls_csv),
-        ("configuration.svg", &configuration),
-        ("motion.gltf", &animation),
-        ("snapshots.svg", &stills),
+        ("trajectory.csv", &|| {
+            Some(table::trajectory_csv(run.tabulated, origin))
+        }),
+        ("controls.csv", &|| {
+            Some(table::controls_csv(trajectory, system, origin))
+        }),
+        ("configuration.svg", &|| Some(pose::svg(in_space))),
+        ("motion.gltf", &|| animation(in_space)),
+        ("snapshots.svg", &|| pose::snapshots(in_space)),
     ];
     let behind: [(&'static str, Maker<'_>); 6] = [
-        ("tip_path.svg", &paths),
-        ("joint_angles.svg", &joints),
-        ("charge.svg", &charges),
-        ("energy.svg", &energies),
-        ("tracking.csv", &tracking_csv),
-        ("tracking.svg", &tracking),
+        ("tip_path.svg", &|| {
+            (!system.markers.is_empty()).then(|| tip_path::svg(run))
+        }),
+        ("joint_angles.svg", &|| drawn(curves::joints(run).plot())),
+        ("charge.svg", &|| {
+            let (label, charges) = curves::charges(run);
+            drawn(curves::plot(label, charges).filter(|_| !run.skins.list.is_empty()))
+        }),
+        ("energy.svg", &|| {
+            drawn(curves::plot("energy [mJ]", curves::energies(run)))
+        }),
+        ("tracking.csv", &|| curves::tracking_csv(run)),
+        ("tracking.svg", &|| drawn(curves::deviations(run).plot())),
     ];
     let inputs = inputs.iter().map(|(name, make)| (*name, make as Maker<'_>));
     let makers: Vec<_> = before.into_iter().chain(inputs).chain(behind).collect();
@@ -143,13 +132,13 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
 /// # Errors
 /// A file cannot be written.
 pub fn write_still(files: &mut FileSet, table: &str, run: &Run<'_>) -> Result<(), WriteError> {
-    let (system, trajectory, skins, origin) = (run.system, run.trajectory, run.skins, run.origin);
-    let csv = table::trajectory_csv(run.observations, origin);
-    let svg = pose::svg(system, trajectory, skins, &run.shown(), origin);
-    let mut texts = vec![(table, csv), ("configuration.svg", svg)];
-    if run.figures.gltf {
-        let text = gltf::text(system, trajectory, skins, origin);
-        texts.extend(text.map(|text| ("motion.gltf", text)));
-    }
+    let csv = table::trajectory_csv(run.observations, run.origin);
+    let mut texts = vec![(table, csv), ("configuration.svg", pose::svg(run))];
+    texts.extend(animation(run).map(|text| ("motion.gltf", text)));
     write(files, run, page(run), texts)
+}
+
+/// The motion as glTF where it is wanted.
+fn animation(run: &Run<'_>) -> Option<String> {
+    run.figures.gltf.then(|| gltf::text(run)).flatten()
 }

@@ -5,6 +5,7 @@ use nalgebra::Vector3;
 use crate::dynamics::trajectory::Trajectory;
 use crate::mesh::triangulated::Surface;
 use crate::model::system::System;
+use crate::report::Run;
 use crate::report::atomic::WriteError;
 use crate::report::drawing::lumped;
 use crate::report::file_set::FileSet;
@@ -40,12 +41,13 @@ const DATA: [&str; 4] = ["kind", "number", "voltage [V]", "stretch"];
 ///
 /// # Errors
 /// A file cannot be written.
-pub(super) fn write(
-    files: &mut FileSet,
-    system: &System,
-    trajectory: &Trajectory,
-    origin: &Origin,
-) -> Result<(), WriteError> {
+pub(super) fn write(files: &mut FileSet, run: &Run<'_>) -> Result<(), WriteError> {
+    let Run {
+        system,
+        trajectory,
+        origin,
+        ..
+    } = *run;
     let mut series = Series::new(NAME, NAME, origin, files)?;
     for k in shown(&trajectory.times, 1) {
         let text = Parts::at(system, trajectory, k).vtp(origin);

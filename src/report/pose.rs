@@ -3,16 +3,14 @@
 use nalgebra::Vector3;
 
 use crate::dynamics::trajectory::Trajectory;
-use crate::model::system::System;
+use crate::report::Run;
 use crate::report::body::Tint;
 use crate::report::canvas::{self, Align};
 use crate::report::drawing::{Drawing, ground_plate, marker_colour, points, reference};
 use crate::report::legend::{self, LegendSymbol, colour_bar};
-use crate::report::origin::Origin;
 use crate::report::skins::Skins;
 use crate::report::style;
 use crate::report::view::View;
-use crate::report::viewpoint::Viewpoint;
 
 /// Most width and height of the drawing in pt.
 const MOST: [f64; 2] = [400.0, 440.0];
@@ -25,60 +23,48 @@ const BAR: f64 = 154.0;
 /// Maximum number of markers named.
 const NAMED: usize = 12;
 
-/// Settings and further data of a figure of a motion.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Shown<'a> {
-    /// Viewpoint.
-    pub viewpoint: Viewpoint,
-    /// Voltages in V, one per source, that hold the last instant, where they are known.
-    pub held: Option<&'a [f64]>,
-    /// Equilibria on the way to a state of rest, where they were followed.
-    pub equilibria: Option<&'a Trajectory>,
-}
-
 /// `configuration.svg`: first and last instant and the path of each marker, framed for the whole motion; muscles are coloured by the
 /// voltages that hold the last instant or else by those of the last interval, blocks by the potentials of the last interval.
 ///
 /// A single instant has the reference configuration behind it, and the way from there.
-pub fn svg(
-    system: &System,
-    trajectory: &Trajectory,
-    skins: &Skins,
-    shown: &Shown<'_>,
-    origin: &Origin,
-) -> String {
-    let last = trajectory.times.len().saturating_sub(1);
-    let at_reference = reference(system);
-    let ground = ground_plate(system);
-    let paths = paths(system, trajectory, shown);
-    let mut points = points(system, trajectory, skins);
-    if last == 0 {
-        points.extend(self::points(system, &at_reference, &Skins::default()));
-        points.extend(skins.list.iter().flat_map(|skin| &skin.reference));
-    }
-    points.extend(paths.iter().flatten());
-    let view = shown.viewpoint.view(system, trajectory, skins);
-    let (view, [width, height]) = view.fitted(&points, [MARGIN, MARGIN], MOST);
-    let zero = vec![0.0; system.sources().len()];
-    let voltages = shown.held.map_or_else(
-        || trajectory.voltages.last().cloned().unwrap_or(zero),
-        <[f64]>::to_vec,
-    );
-    let highest = vec![skins.highest()];
-    let scale = match shown.held {
-        Some(_) => style::voltage_scale([&voltages[..system.first_load()], &highest]),
-        None => style::voltage_scale(trajectory.voltages(system).chain([&highest[..]])),
-    };
-    let is_charged = is_charged(system, skins);
-    let mut drawing = Drawing {
+pub fn svg(run: &Run<'_>) -> String {
+    let Run {
         system,
         trajectory,
         skins,
+        ..
+    } = *run;
+    let last = trajectory.intervals();
+    let at_reference = Run {
+        trajectory: &reference(system),
+        skins: &Skins::default(),
+        ..*run
+    };
+    let ground = ground_plate(system);
+    let paths = paths(run);
+    let mut points = points(run);
+    if last == 0 {
+        points.extend(self::points(&at_reference));
+        points.extend(skins.list.iter().flat_map(|skin| &skin.reference));
+    }
+    points.extend(paths.iter().flatten());
+    let (view, [width, height]) = run.view().fitted(&points, [MARGIN, MARGIN], MOST);
+    let (voltages, scale) = match run.held {
+        Some(held) => {
+            let highest = vec![skins.highest()];
+            let voltages = [&held[..system.first_load()], &highest];
+            (held.to_vec(), style::voltage_scale(voltages))
+        }
+        None => (voltages(run, last), run.voltage_scale()),
+    };
+    let is_charged = is_charged(run);
+    let mut drawing = Drawing {
+        run: *run,
         view,
         voltages,
         scale,
     };
-    let names = names(system, trajectory, skins, shown);
+    let names = names(run);
     let bar = if is_charged { BAR } else { 0.0 };
     let beside = bar + legend::ROW * names.len() as f64 + legend::TRIAD;
     let side = SIDE.max(legend::width(&names) + 22.0);
@@ -88,13 +74,12 @@ pub fn svg(
     ];
     // What is flat stands in the middle.
     drawing.view.origin[1] += 0.5 * (size[1] - 2.0 * MARGIN - height);
-    canvas::svg(size, origin, |canvas| {
+    canvas::svg(size, run.origin, |canvas| {
         drawing.ground(canvas, &ground);
         match last {
             0 => {
                 let behind = Drawing {
-                    trajectory: &at_reference,
-                    skins: &Skins::default(),
+                    run: at_reference,
                     voltages: Vec::new(),
                     ..drawing
                 };
@@ -117,36 +102,44 @@ pub fn svg(
 }
 
 /// Returns true if voltages colour anything.
-fn is_charged(system: &System, skins: &Skins) -> bool {
-    !system.muscles.is_empty() || skins.list.iter().any(|skin| skin.is_charged)
+fn is_charged(run: &Run<'_>) -> bool {
+    !run.system.muscles.is_empty() || run.skins.list.iter().any(|skin| skin.is_charged)
+}
+
+/// Voltages in V of the interval that ends at an instant; zero where there is none.
+fn voltages(run: &Run<'_>, instant: usize) -> Vec<f64> {
+    let known = run.trajectory.voltages.get(instant.saturating_sub(1));
+    let zero = || vec![0.0; run.system.sources().len()];
+    known.cloned().unwrap_or_else(zero)
 }
 
 /// The path of each marker; to a state of rest through the equilibria on the way, or straight from the reference configuration.
-fn paths(system: &System, trajectory: &Trajectory, shown: &Shown<'_>) -> Vec<Vec<Vector3<f64>>> {
-    let markers = system.markers.iter().enumerate();
-    let path = markers.map(|(m, marker)| match trajectory.times.len() {
-        0 | 1 => {
-            let between = shown.equilibria.map_or_else(Vec::new, |way| way.path(m));
-            let ends = trajectory.path(m);
+fn paths(run: &Run<'_>) -> Vec<Vec<Vector3<f64>>> {
+    let markers = run.system.markers.iter().enumerate();
+    let path = markers.map(|(m, marker)| match run.trajectory.intervals() {
+        0 => {
+            let between = run.equilibria.map_or_else(Vec::new, |way| way.path(m));
+            let ends = run.trajectory.path(m);
             [marker.point.at]
                 .into_iter()
                 .chain(between)
                 .chain(ends)
                 .collect()
         }
-        _ => trajectory.path(m),
+        _ => run.trajectory.path(m),
     });
     path.collect()
 }
 
 /// Returns the names of the drawn parts.
-fn names(
-    system: &System,
-    trajectory: &Trajectory,
-    skins: &Skins,
-    shown: &Shown<'_>,
-) -> Vec<(String, LegendSymbol)> {
-    let last = trajectory.times.len().saturating_sub(1);
+fn names(run: &Run<'_>) -> Vec<(String, LegendSymbol)> {
+    let Run {
+        system,
+        trajectory,
+        skins,
+        ..
+    } = *run;
+    let last = trajectory.intervals();
     let of_blocks = system.bodies.is_empty();
     let now = match skins.list.first() {
         Some(skin) if of_blocks && skin.is_charged => style::voltage(0.5),
@@ -156,7 +149,7 @@ fn names(
     let (before, after) = match last {
         0 => ("reference".to_owned(), "at rest".to_owned()),
         _ => {
-            let held = if shown.held.is_some() { ", held" } else { "" };
+            let held = if run.held.is_some() { ", held" } else { "" };
             let [first, end] = [0, last].map(|k| time(trajectory.times[k]));
             (format!("at {first}"), format!("at {end}{held}"))
         }
@@ -167,7 +160,7 @@ fn names(
     ];
     let count = system.markers.len();
     for (m, marker) in system.markers.iter().take(NAMED).enumerate() {
-        let what = match (last, shown.equilibria) {
+        let what = match (last, run.equilibria) {
             (0, None) => "displacement",
             _ => "path",
         };
@@ -200,22 +193,15 @@ const BESIDE: f64 = 290.0;
 
 /// `snapshots.svg`: instants at equal distances from the first to the last in one frame, each with the voltages of the interval that ends
 /// there and the paths of the markers up to there; none of a single instant.
-pub(super) fn snapshots(
-    system: &System,
-    trajectory: &Trajectory,
-    skins: &Skins,
-    viewpoint: Viewpoint,
-    origin: &Origin,
-) -> Option<String> {
-    let instants = instants(trajectory, skins);
+pub(super) fn snapshots(run: &Run<'_>) -> Option<String> {
+    let (system, trajectory) = (run.system, run.trajectory);
+    let instants = instants(trajectory, run.skins);
     if instants.len() < 2 {
         return None;
     }
-    let view = viewpoint.view(system, trajectory, skins);
-    let points = points(system, trajectory, skins);
-    let (view, [width, height]) = view.fitted(&points, [0.0, 0.0], PANEL);
+    let (view, [width, height]) = run.view().fitted(&points(run), [0.0, 0.0], PANEL);
     let ground = ground_plate(system);
-    let scale = style::voltage_scale(trajectory.voltages(system).chain([&[skins.highest()][..]]));
+    let scale = run.voltage_scale();
     let step = [width.max(40.0) + GAP, height + LABEL + GAP];
     let rows = (instants.len() as f64 * step[0] / ROW_WIDTH).ceil() as usize;
     let columns = instants.len().div_ceil(rows);
@@ -224,7 +210,7 @@ pub(super) fn snapshots(
         2.0 * GAP + columns as f64 * step[0] + BAR_SIDE,
         (2.0 * GAP + rows as f64 * step[1]).max(BESIDE),
     ];
-    Some(canvas::svg(size, origin, |canvas| {
+    Some(canvas::svg(size, run.origin, |canvas| {
         for (i, &k) in instants.iter().enumerate() {
             let corner = [
                 GAP + (i % columns) as f64 * step[0],
@@ -235,15 +221,10 @@ pub(super) fn snapshots(
                 origin: [x + corner[0], y + corner[1]],
                 ..view
             };
-            let voltages = trajectory.voltages.get(k.saturating_sub(1));
             let drawing = Drawing {
-                system,
-                trajectory,
-                skins,
+                run: *run,
                 view,
-                voltages: voltages
-                    .cloned()
-                    .unwrap_or_else(|| vec![0.0; system.sources().len()]),
+                voltages: voltages(run, k),
                 scale,
             };
             drawing.ground(canvas, &ground);
@@ -258,7 +239,7 @@ pub(super) fn snapshots(
             canvas.text(place, &label, style::TICK_SIZE, Align::Centre);
         }
         let left = size[0] - BAR_SIDE + GAP;
-        if is_charged(system, skins) {
+        if is_charged(run) {
             colour_bar(canvas, [left, GAP + 18.0], scale);
         }
         legend::triad(canvas, &view, [left + 22.0, BESIDE - 2.0 * GAP]);

@@ -7,8 +7,9 @@ use crate::kinematics::Pose;
 use crate::model::system::System;
 use crate::report::lines::LinePlot;
 use crate::report::origin::Origin;
-use crate::report::pose::Shown;
 use crate::report::skins::Skins;
+use crate::report::style;
+use crate::report::view::View;
 use crate::report::viewpoint::Viewpoint;
 use crate::workflow::Tracked;
 use crate::workflow::closed_loop::DisturbedLoop;
@@ -143,12 +144,22 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// Returns the settings of a figure in space.
-    pub(super) fn shown(&self) -> Shown<'_> {
-        Shown {
-            viewpoint: self.figures.view,
-            held: self.held,
-            equilibria: self.equilibria,
-        }
+    /// The view of its figures in space.
+    pub(super) fn view(&self) -> View {
+        let viewpoint = self.figures.view;
+        viewpoint.view(self.system, self.trajectory, self.skins)
+    }
+
+    /// Full scale in V of the colours of its voltages and potentials.
+    pub(super) fn voltage_scale(&self) -> f64 {
+        let highest = [self.skins.highest()];
+        let voltages = self.trajectory.voltages(self.system);
+        style::voltage_scale(voltages.chain([&highest[..]]))
+    }
+
+    /// The motions whose paths its figures show, with their names: the one that it is compared with, then its own.
+    pub(super) fn motions(&self) -> Vec<(&'a str, &'a Trajectory)> {
+        let own = (self.name, self.trajectory);
+        self.comparison.into_iter().chain([own]).collect()
     }
 }

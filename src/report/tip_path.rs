@@ -2,16 +2,12 @@
 
 use nalgebra::Vector3;
 
-use crate::dynamics::trajectory::Trajectory;
-use crate::model::system::System;
+use crate::report::Run;
 use crate::report::axes::{Axis, Extent};
 use crate::report::curves;
 use crate::report::lines::{Aspect, LinePlot, Mark, Series};
-use crate::report::origin::Origin;
 use crate::report::style::{self, Dash};
 use crate::report::view::corners;
-use crate::report::viewpoint::Viewpoint;
-use crate::workflow::Tracked;
 
 /// The two axes of largest extent, horizontal first: y is never horizontal, and x goes before z.
 fn plane<'a>(points: impl Iterator<Item = &'a Vector3<f64>>) -> [usize; 2] {
@@ -31,41 +27,24 @@ fn plane<'a>(points: impl Iterator<Item = &'a Vector3<f64>>) -> [usize; 2] {
 /// `tip_path.svg`: the motion of each marker under each named trajectory, with its start and end, and the places that it was to pass.
 ///
 /// The last trajectory is the one that matters: drawn strong and on top of the others, below what its markers were to follow, dashed.
-pub fn svg(
-    system: &System,
-    trajectories: &[(&str, &Trajectory)],
-    tracked: &[Tracked],
-    waypoints: &[(usize, Vector3<f64>)],
-    view: Viewpoint,
-    origin: &Origin,
-) -> String {
-    let all = trajectories.iter().flat_map(|(_, one)| &one.marks);
-    let plane = view.plane().unwrap_or_else(|| plane(all.flatten()));
-    plot(system, trajectories, tracked, waypoints, plane).svg(origin)
+pub fn svg(run: &Run<'_>) -> String {
+    let motions = run.motions();
+    let all = motions.iter().flat_map(|(_, one)| &one.marks);
+    let plane = run.figures.view.plane();
+    let plane = plane.unwrap_or_else(|| self::plane(all.flatten()));
+    plot(run, plane).svg(run.origin)
 }
 
 /// The paths in the plane of two axes, horizontal first.
-pub(super) fn plot(
-    system: &System,
-    trajectories: &[(&str, &Trajectory)],
-    tracked: &[Tracked],
-    waypoints: &[(usize, Vector3<f64>)],
-    [horizontal, vertical]: [usize; 2],
-) -> LinePlot {
-    let paths: Vec<_> = trajectories
-        .iter()
-        .map(|(name, trajectory)| {
-            let markers = 0..system.markers.len();
-            let paths: Vec<_> = markers.map(|m| trajectory.path(m)).collect();
-            (name, paths)
-        })
-        .collect();
+pub(super) fn plot(run: &Run<'_>, [horizontal, vertical]: [usize; 2]) -> LinePlot {
+    let (system, motions) = (run.system, run.motions());
     let flat = |p: &Vector3<f64>| [p[horizontal], p[vertical]];
     let mut series = Vec::new();
     let (mut starts, mut ends) = (Vec::new(), Vec::new());
-    for (i, (name, paths)) in paths.iter().enumerate() {
-        let is_main = i + 1 == trajectories.len();
-        for (j, (path, marker)) in paths.iter().zip(&system.markers).enumerate() {
+    for (i, (name, trajectory)) in motions.iter().enumerate() {
+        let is_main = i + 1 == motions.len();
+        for (j, marker) in system.markers.iter().enumerate() {
+            let path: Vec<_> = trajectory.path(j).iter().map(flat).collect();
             let name = match system.markers.len() {
                 1 => (*name).to_string(),
                 _ => format!("{}, {name}", marker.name),
@@ -75,17 +54,19 @@ pub(super) fn plot(
                 (false, 0) => style::MUTED,
                 (false, _) => style::hue(j).mix(style::PAPER, 0.5),
             };
-            let mut curve = Series::curve(name, path.iter().map(flat).collect(), colour);
-            curve.width = if is_main { 2.0 } else { 1.0 };
-            series.push(curve);
             if is_main {
-                starts.extend(path.first().map(flat));
-                ends.extend(path.last().map(flat));
+                starts.extend(path.first());
+                ends.extend(path.last());
             }
+            let width = if is_main { 2.0 } else { 1.0 };
+            series.push(Series {
+                width,
+                ..Series::curve(name, path, colour)
+            });
         }
     }
     for marker in &system.markers {
-        if let Some(points) = curves::reference(tracked, &marker.name, [horizontal, vertical]) {
+        if let Some(points) = curves::reference(run.tracked, &marker.name, [horizontal, vertical]) {
             let name = match system.markers.len() {
                 1 => "reference".to_owned(),
                 _ => format!("{}, reference", marker.name),
@@ -94,8 +75,8 @@ pub(super) fn plot(
             series.push(curve.dashed(Dash::Dashed));
         }
     }
-    if !waypoints.is_empty() {
-        let places = waypoints.iter().map(|(_, place)| flat(place)).collect();
+    if !run.waypoints.is_empty() {
+        let places = run.waypoints.iter().map(|(_, place)| flat(place)).collect();
         let crosses = Series::curve("to pass", places, style::INK);
         series.push(crosses.marked(Mark::Cross).unjoined());
     }

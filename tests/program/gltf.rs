@@ -3,11 +3,11 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use nalgebra::Vector3;
-use proboscis::dynamics::trajectory::Trajectory;
+use proboscis::dynamics::trajectory::{Observations, Trajectory};
 use proboscis::model::system::System;
-use proboscis::report::gltf;
 use proboscis::report::origin::Origin;
 use proboscis::report::skins::{Skin, Skins};
+use proboscis::report::{Run, gltf};
 use serde_json::Value;
 
 type Vector = Vector3<f64>;
@@ -127,6 +127,13 @@ fn origin() -> Origin {
     }
 }
 
+/// The file of a motion.
+fn written(system: &System, trajectory: &Trajectory, skins: &Skins) -> String {
+    let (observations, origin) = (Observations::default(), origin());
+    let run = Run::from_trajectory(system, trajectory, skins, &observations, &origin);
+    gltf::text(&run).unwrap()
+}
+
 fn swing() -> (System, Trajectory) {
     let system = crate::common::trunk::system(6);
     let trajectory = crate::common::trunk::swing(&system, 20);
@@ -159,7 +166,7 @@ const CLOSE: f64 = 1e-7;
 #[test]
 fn bodies_muscles_and_markers_move_as_they_do() {
     let (system, trajectory) = swing();
-    let read = Read::new(&gltf::text(&system, &trajectory, &Skins::default(), &origin()).unwrap());
+    let read = Read::new(&written(&system, &trajectory, &Skins::default()));
     let mut greatest: f64 = 0.0;
     for (b, body) in system.bodies.iter().enumerate() {
         let (times, places) = read.animated(&body.name, "translation");
@@ -219,7 +226,7 @@ fn surfaces_take_the_places_of_each_instant() {
     let (system, trajectory) = swing();
     let count = trajectory.times.len();
     let skins = sheet(count);
-    let read = Read::new(&gltf::text(&system, &trajectory, &skins, &origin()).unwrap());
+    let read = Read::new(&written(&system, &trajectory, &skins));
     let (points, targets, indices) = read.mesh("block 1");
     assert_eq!(indices, [0, 1, 3, 0, 3, 2, 2, 3, 5, 2, 5, 4]);
     let (_, weights) = read.animated("block 1", "weights");
@@ -244,11 +251,11 @@ fn surfaces_take_the_places_of_each_instant() {
 fn a_single_instant_has_no_animation_and_what_is_not_finite_is_left_out() {
     let (system, mut trajectory) = swing();
     trajectory.poses[7][2].centre.x = f64::NAN;
-    let text = gltf::text(&system, &trajectory, &Skins::default(), &origin()).unwrap();
+    let text = written(&system, &trajectory, &Skins::default());
     let (times, _) = Read::new(&text).animated("tip", "translation");
     assert_eq!(times.len(), trajectory.times.len() - 1);
     trajectory.times.truncate(1);
-    let text = gltf::text(&system, &trajectory, &sheet(1), &origin()).unwrap();
+    let text = written(&system, &trajectory, &sheet(1));
     let read = Read::new(&text);
     assert!(read.file.get("animations").is_none());
     let (_, node) = read.node("tip");

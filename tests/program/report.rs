@@ -10,9 +10,7 @@ use proboscis::report::axes::{Axis, Extent};
 use proboscis::report::file_set::FileSet;
 use proboscis::report::lines::{LinePlot, Mark, Series};
 use proboscis::report::origin::Origin;
-use proboscis::report::pose::Shown;
 use proboscis::report::skins::Skins;
-use proboscis::report::viewpoint::Viewpoint;
 use proboscis::report::{
     PageContent, Run, curves, pose, quoting, style, table, tip_path, write_run,
 };
@@ -157,6 +155,24 @@ fn aligned_text_lines_up() {
     assert_eq!(table::aligned(&rows), "η     10\nname   2\n");
 }
 
+/// A figure of a motion without elastic blocks.
+fn figure<T>(system: &System, trajectory: &Trajectory, make: impl FnOnce(&Run<'_>) -> T) -> T {
+    let (skins, observations, origin) = (Skins::default(), Observations::default(), origin());
+    make(&Run::from_trajectory(
+        system,
+        trajectory,
+        &skins,
+        &observations,
+        &origin,
+    ))
+}
+
+/// The figure of its voltages.
+fn voltages(system: &System, trajectory: &Trajectory) -> String {
+    let svg = |run: &Run<'_>| curves::input_svg(run, InputKind::Voltage);
+    figure(system, trajectory, svg).unwrap()
+}
+
 #[test]
 fn agonists_are_solid_and_antagonists_dashed() {
     let system = crate::common::trunk::system(6);
@@ -164,16 +180,12 @@ fn agonists_are_solid_and_antagonists_dashed() {
     let solid_alone = |trajectory: &Trajectory| {
         let mut system = system.clone();
         system.muscles.truncate(1);
-        curves::input_svg(&system, trajectory, InputKind::Voltage, &origin())
-            .unwrap()
-            .1
+        voltages(&system, trajectory)
     };
     for (k, voltages) in trajectory.voltages.iter_mut().enumerate() {
         *voltages = (0..12).map(|i| 100.0 * (i + k) as f64).collect();
     }
-    let svg = curves::input_svg(&system, &trajectory, InputKind::Voltage, &origin())
-        .unwrap()
-        .1;
+    let svg = voltages(&system, &trajectory);
     assert_well_formed(&svg);
     let (colour, _) = style::muscle(0);
     assert_eq!(style::muscle(1).0, colour);
@@ -187,9 +199,7 @@ fn voltage_figures_hold_from_one_to_forty_muscles() {
     for segments in [1, 6, 20] {
         let system = crate::common::trunk::system(segments);
         let trajectory = crate::common::trunk::swing(&system, 5);
-        let svg = curves::input_svg(&system, &trajectory, InputKind::Voltage, &origin())
-            .unwrap()
-            .1;
+        let svg = voltages(&system, &trajectory);
         assert_well_formed(&svg);
         for muscle in &system.muscles {
             assert!(svg.contains(&format!(">\n{}\n<", muscle.name)));
@@ -213,24 +223,14 @@ fn what_is_not_finite_is_not_drawn() {
     let series = Series::curve("error", curve, style::INK).marked(Mark::Disc);
     let plot = LinePlot::new(Axis::log("work"), Axis::log("error"), vec![series]);
     for svg in [
-        curves::input_svg(&system, &trajectory, InputKind::Voltage, &origin())
-            .unwrap()
-            .1,
-        tip_path::svg(
-            &system,
-            &[("swing", &trajectory)],
-            &[],
-            &[(0, Vector3::new(1.0, 2.0, 3.0))],
-            Viewpoint::Oblique,
-            &origin(),
-        ),
-        pose::svg(
-            &system,
-            &trajectory,
-            &Skins::default(),
-            &Shown::default(),
-            &origin(),
-        ),
+        voltages(&system, &trajectory),
+        figure(&system, &trajectory, |run| {
+            tip_path::svg(&Run {
+                waypoints: &[(0, Vector3::new(1.0, 2.0, 3.0))],
+                ..*run
+            })
+        }),
+        figure(&system, &trajectory, pose::svg),
         plot.svg(&origin()),
     ] {
         assert_well_formed(&svg);
@@ -251,13 +251,7 @@ fn every_shape_is_drawn() {
     for (body, shape) in system.bodies.iter_mut().zip(shapes) {
         body.shape = shape;
     }
-    let svg = pose::svg(
-        &system,
-        &trajectory,
-        &Skins::default(),
-        &Shown::default(),
-        &origin(),
-    );
+    let svg = figure(&system, &trajectory, pose::svg);
     assert_well_formed(&svg);
     assert!(svg.contains("voltage [kV]") && svg.contains("path of tip"));
 }

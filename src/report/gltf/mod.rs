@@ -11,13 +11,13 @@ use nalgebra::{Matrix3, Rotation3, UnitQuaternion, Vector3};
 
 use crate::dynamics::trajectory::Trajectory;
 use crate::kinematics::Pose;
-use crate::model::system::{Marker, Shape, System};
-use crate::report::drawing::{component_lines, lumped, marker_colour};
+use crate::model::system::{Marker, Shape};
+use crate::report::Run;
+use crate::report::drawing::{lumped, marker_colour};
 use crate::report::gltf::document::{
     Document, METRE, Mode, Moving, Placed, body, cube, sphere, triangles,
 };
-use crate::report::load_arrows::LoadArrows;
-use crate::report::origin::Origin;
+use crate::report::moving_lines::{arrows, ties};
 use crate::report::skins::{Skins, shown};
 use crate::report::solids::Prism;
 use crate::report::style;
@@ -29,41 +29,27 @@ const GLASS: f32 = 0.35;
 const MARKER: f64 = 0.008;
 
 /// `motion.gltf`: the system at the instants that pictures show; of a single instant without animation. None where nothing is finite.
-pub fn text(
-    system: &System,
-    trajectory: &Trajectory,
-    skins: &Skins,
-    origin: &Origin,
-) -> Option<String> {
-    let instants = instants(trajectory, skins);
-    let times: Vec<f64> = instants
-        .iter()
-        .map(|&k| trajectory.times[k] / 1e3)
-        .collect();
+pub fn text(run: &Run<'_>) -> Option<String> {
+    let motion = Motion {
+        run,
+        instants: instants(run.trajectory, run.skins),
+    };
+    let times = motion.each(|k| run.trajectory.times[k] / 1e3);
     if times.is_empty() {
         return None;
     }
     let mut document = Document::new(&times);
-    let motion = Motion {
-        system,
-        trajectory,
-        skins,
-        instants,
-    };
     motion.add_bodies(&mut document);
     motion.add_muscles(&mut document);
     motion.add_markers(&mut document);
     motion.add_surfaces(&mut document);
-    motion.add_ties(&mut document);
-    motion.add_loads(&mut document);
-    Some(document.text(&system.name, origin))
+    motion.add_lines(&mut document);
+    Some(document.text(&run.system.name, run.origin))
 }
 
-/// A system at the instants that are shown.
+/// A motion at the instants that are shown.
 struct Motion<'a> {
-    system: &'a System,
-    trajectory: &'a Trajectory,
-    skins: &'a Skins,
+    run: &'a Run<'a>,
     instants: Vec<usize>,
 }
 
@@ -75,78 +61,68 @@ impl Motion<'_> {
 
     fn add_bodies(&self, document: &mut Document) {
         let glass = document.material("body", style::BODY, GLASS);
-        for (b, part) in self.system.bodies.iter().enumerate() {
+        for (b, part) in self.run.system.bodies.iter().enumerate() {
             let shape = body(&part.shape);
             let mesh = match part.shape {
                 Shape::None => None,
                 _ => Some(document.mesh(&part.name, &shape, glass)),
             };
-            let poses = self.each(|k| of_pose(&self.trajectory.poses[k][b]));
+            let poses = self.each(|k| of_pose(&self.run.trajectory.poses[k][b]));
             document.moving(&part.name, mesh, &poses, Moving::Rigid);
         }
     }
 
     /// Lumped muscles.
     fn add_muscles(&self, document: &mut Document) {
-        let unit = cube();
-        for m in lumped(self.system) {
-            let name = &self.system.muscles[m].name;
+        let (unit, system) = (cube(), self.run.system);
+        for m in lumped(system) {
+            let name = &system.muscles[m].name;
             let material = document.material(name, style::muscle(m).0, 1.0);
             let mesh = document.mesh(name, &unit, material);
-            let prism = |k| of_prism(&Prism::muscle(self.system, self.trajectory, k, m));
+            let prism = |k| of_prism(&Prism::muscle(system, self.run.trajectory, k, m));
             document.moving(name, Some(mesh), &self.each(prism), Moving::Stretched);
         }
     }
 
     fn add_markers(&self, document: &mut Document) {
-        let markers = &self.system.markers;
-        let ball = sphere(MARKER * METRE * size(self.trajectory, &self.instants));
+        let (markers, trajectory) = (&self.run.system.markers, self.run.trajectory);
+        let ball = sphere(MARKER * METRE * size(trajectory, &self.instants));
         for (m, Marker { name, .. }) in markers.iter().enumerate() {
             let material = document.material(name, marker_colour(m, markers.len()), 1.0);
             let mesh = document.mesh(name, &ball, material);
-            let places = self.each(|k| Placed::at(self.trajectory.marks[k][m] * METRE));
+            let places = self.each(|k| Placed::at(trajectory.marks[k][m] * METRE));
             document.moving(name, Some(mesh), &places, Moving::Shifted);
         }
     }
 
     /// Surfaces of elastic blocks.
     fn add_surfaces(&self, document: &mut Document) {
-        for (s, skin) in self.skins.list.iter().enumerate() {
+        for (s, skin) in self.run.skins.list.iter().enumerate() {
             let (name, colour) = match skin.muscle {
                 Some(muscle) => {
-                    let name = self.system.muscles[muscle].name.clone();
+                    let name = self.run.system.muscles[muscle].name.clone();
                     (name, style::muscle(muscle).0)
                 }
                 None => (format!("block {}", s + 1), style::PASSIVE),
             };
             let material = document.material(&name, colour, 1.0);
-            let places = self.each(|k| metres(&skin.places[self.skins.position(k)]));
+            let places = self.each(|k| metres(&skin.places[self.run.skins.position(k)]));
             let mode = Mode::Triangles(triangles(&skin.quads));
             document.deforming(&name, &places, mode, material);
         }
     }
 
-    /// Springs and tendons.
-    fn add_ties(&self, document: &mut Document) {
-        let lines = self.each(|k| component_lines(self.system, self.trajectory, k));
-        for (c, component) in self.system.components.iter().enumerate() {
-            let material = document.material(component.name(), style::TIE, 1.0);
-            let mut places: Vec<_> = lines.iter().map(|lines| metres(&lines[c])).collect();
+    /// Springs, tendons and arrows of loads.
+    fn add_lines(&self, document: &mut Document) {
+        let ties = ties(self.run, &self.instants).into_iter();
+        for line in ties.chain(arrows(self.run, &self.instants)) {
+            let material = document.material(line.name, line.colour, 1.0);
+            let mut places: Vec<_> = line.places.iter().map(|places| metres(places)).collect();
             // A coil that has no direction is a line of two points.
             if places.iter().any(|points| points.len() != places[0].len()) {
                 places = places.iter().map(|p| vec![p[0], p[p.len() - 1]]).collect();
             }
-            document.deforming(component.name(), &places, Mode::Line, material);
-        }
-    }
-
-    /// Arrows of the loads.
-    fn add_loads(&self, document: &mut Document) {
-        let arrows = LoadArrows::new(self.system, self.trajectory, self.skins);
-        for (source, load) in arrows.loads() {
-            let material = document.material(&load.name, style::muscle(source).0, 1.0);
-            let places = self.each(|k| metres(&arrows.arrow(source, load, k)));
-            document.deforming(&load.name, &places, Mode::Line, material);
+            document.deforming(line.name, &places, Mode::Line, material);
         }
     }
 }

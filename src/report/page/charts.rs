@@ -5,9 +5,9 @@ use serde_json::{Value, json};
 use crate::dynamics::trajectory::Column;
 use crate::model::system::{InputKind, System};
 use crate::report::axes::Scale;
-use crate::report::lines::{Aspect, LinePlot, Mark, Series, over_time};
+use crate::report::lines::{Aspect, LinePlot, Mark, Series};
 use crate::report::page::scene::numbers;
-use crate::report::style::{self, Dash};
+use crate::report::style::Dash;
 use crate::report::{Run, curves, tip_path};
 
 /// Panels beyond which voltages are shown as colours.
@@ -44,7 +44,7 @@ pub(super) fn of_plot(titled: &(String, LinePlot)) -> Value {
 
 /// Inputs of a kind: the sources between the same two bodies share a panel; many panels become rows of colours.
 fn of_inputs(run: &Run<'_>, kind: InputKind) -> Option<Value> {
-    let curves = curves::inputs(run.system, run.trajectory, kind);
+    let curves = curves::inputs(run, kind);
     let (mut names, mut groups): (Vec<String>, Vec<Vec<&Series>>) = (Vec::new(), Vec::new());
     for (i, curve) in &curves {
         let name = pair(run.system, *i);
@@ -95,47 +95,34 @@ fn pair(system: &System, source: usize) -> String {
 
 /// Quantities over time with a chart each, with a panel for each unit.
 fn charts_over_time(run: &Run<'_>) -> Vec<Value> {
-    let (system, motion, observed) = (run.system, run.trajectory, run.observations);
-    let named = |chosen: &dyn Fn(&Column) -> Option<String>| {
-        let columns = observed.columns.iter();
-        let named = columns.filter_map(|column| Some((chosen(column)?, column)));
-        let curve = |(i, (name, column)): (usize, (String, &Column))| {
-            let points = over_time(&motion.times, column.values.iter().copied());
-            Series::curve(name, points, style::hue(i))
-        };
-        named.enumerate().map(curve).collect::<Vec<_>>()
-    };
     let begins = |column: &Column, start: &str, about: &str| {
         let axis = column.name.strip_prefix(start)?;
         Some(format!("{about}{axis}"))
     };
     let marker = |column: &Column| {
         let (name, axis) = column.name.rsplit_once('_')?;
-        let is = column.unit == "mm" && system.markers.iter().any(|marker| marker.name == name);
+        let markers = &run.system.markers;
+        let is = column.unit == "mm" && markers.iter().any(|marker| marker.name == name);
         is.then(|| format!("{name} {axis}"))
     };
     let violation = |column: &Column| {
         (column.name == "constraint_violation").then(|| "constraint violation".to_owned())
     };
-    let linear = named(&|column| begins(column, "linear_momentum_", ""));
-    let angular = named(&|column| begins(column, "angular_momentum_", "about "));
+    let linear = curves::named(run, &|column| begins(column, "linear_momentum_", ""));
+    let angular = curves::named(run, &|column| begins(column, "angular_momentum_", "about "));
     let alone = |label: &'static str, curves: Vec<Series>| vec![(label, curves)];
-    let of_each = |title: &'static str, label, end: &str| {
-        let curves = curves::of_sources(system, motion, observed, end);
-        (title, alone(label, curves))
-    };
-    let energies = curves::energies(motion, observed);
-    let deviations = curves::deviations(&motion.times, run.tracked);
+    let of_each =
+        |title: &'static str, label, end: &str| (title, alone(label, curves::of_sources(run, end)));
     let all = [
-        ("Joints", curves::joints(system, motion).panels()),
-        ("Markers", alone("place [mm]", named(&marker))),
-        ("Deviations", deviations.panels()),
+        ("Joints", curves::joints(run).panels()),
+        ("Markers", alone("place [mm]", curves::named(run, &marker))),
+        ("Deviations", curves::deviations(run).panels()),
         of_each("Stretches", "stretch", "_stretch"),
         of_each("Tensions", "tension [N]", "_tension"),
-        ("Charges", vec![curves::charges(system, motion, observed)]),
+        ("Charges", vec![curves::charges(run)]),
         of_each("Voltages of electrodes", "voltage [V]", "_voltage"),
         of_each("Electric fields", "field [V/µm]", "_field"),
-        ("Energies", alone("energy [mJ]", energies)),
+        ("Energies", alone("energy [mJ]", curves::energies(run))),
         of_each(
             "Energy from each source",
             "energy [mJ]",
@@ -152,7 +139,7 @@ fn charts_over_time(run: &Run<'_>) -> Vec<Value> {
         ),
         (
             "Constraint violation",
-            alone("violation", named(&violation)),
+            alone("violation", curves::named(run, &violation)),
         ),
     ];
     let each = all.into_iter().filter_map(|(title, panels)| {
@@ -174,12 +161,8 @@ fn of_time(label: &str, curves: Vec<Series>) -> Option<Value> {
 
 /// Paths of the markers in the three planes of the axes.
 fn paths(run: &Run<'_>) -> Option<Value> {
-    let mut motions: Vec<_> = run.comparison.into_iter().collect();
-    motions.push((run.name, run.trajectory));
-    let panels = PLANES.map(|plane| {
-        let plot = tip_path::plot(run.system, &motions, run.tracked, run.waypoints, plane);
-        panel(&tip_path::plane_name(plane), &plot)
-    });
+    let panels =
+        PLANES.map(|plane| panel(&tip_path::plane_name(plane), &tip_path::plot(run, plane)));
     let is_any = !run.system.markers.is_empty();
     is_any.then(|| json!({ "title": "Paths of the markers", "kind": "plot", "panels": panels }))
 }

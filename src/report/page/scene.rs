@@ -3,10 +3,11 @@
 use crate::kinematics::Pose;
 use crate::mesh::triangulated::Surface;
 use crate::model::system::{Attachment, Joint, JointKind};
-use crate::report::drawing::{component_lines, ground_plate, held_faces, lumped};
-use crate::report::load_arrows::LoadArrows;
+use crate::report::drawing::{ground_plate, held_faces, lumped};
+use crate::report::moving_lines::{MovingLine, arrows, ties};
 use crate::report::skins::{Skin, shown};
 use crate::report::solids::Prism;
+use crate::report::style::Colour;
 use crate::report::{Run, solids, style};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -37,22 +38,18 @@ pub(super) fn scene(run: &Run<'_>) -> Value {
     let mut parts = stage.bodies();
     parts.extend(stage.muscles());
     parts.extend(run.skins.list.iter().map(|skin| stage.block(skin)));
-    let view = run.figures.view.view(run.system, run.trajectory, run.skins);
-    let goal = run.goal;
-    let highest = [run.skins.highest()];
-    let scale = style::voltage_scale(run.trajectory.voltages(run.system).chain([&highest[..]]));
     json!({
         "name": run.name,
         "span": run.branch.is_none().then(|| [times[0] / 1e3, times[times.len() - 1] / 1e3]),
         "branch": run.branch.map(|branch| json!({ "fractions": numbers(branch.fractions.iter().copied()), "shown": branch.shown })),
         "times": numbers(instants.iter().map(|&k| times[k] / 1e3)),
-        "toward": view.toward.as_slice(),
-        "voltage": scale / 1e3,
+        "toward": run.view().toward.as_slice(),
+        "voltage": run.voltage_scale() / 1e3,
         "parts": parts,
-        "ties": stage.ties(),
+        "ties": stage.lines(),
         "joints": stage.joints(),
         "markers": stage.markers(),
-        "goal": goal.map(|poses| numbers(poses.iter().flat_map(moved))),
+        "goal": run.goal.map(|poses| numbers(poses.iter().flat_map(moved))),
         "ground": {
             "plate": places(&ground_plate(run.system)),
             "faces": places(held_faces(run.system).iter().flatten()),
@@ -170,38 +167,21 @@ impl Stage<'_> {
         })
     }
 
-    fn ties(&self) -> Vec<Value> {
-        let (system, trajectory) = (self.run.system, self.run.trajectory);
-        let mut all: Vec<Vec<Vec<Vector3<f64>>>> = Vec::new();
-        for &k in self.instants {
-            let lines = component_lines(system, trajectory, k);
-            all.resize(lines.len(), Vec::new());
-            all.iter_mut()
-                .zip(lines)
-                .for_each(|(all, line)| all.push(line));
-        }
-        let line = |lines: &Vec<Vec<Vector3<f64>>>| {
-            let most = lines.iter().map(Vec::len).max().unwrap_or(0);
+    /// Springs, tendons and other components, and arrows of loads.
+    fn lines(&self) -> Vec<Value> {
+        let line = |line: &MovingLine<'_>, colour: Colour| {
+            let most = line.places.iter().map(Vec::len).max().unwrap_or(0);
             // A line of fewer points stays at its last one.
-            let points = lines.iter().flat_map(|line| {
+            let points = line.places.iter().flat_map(|line| {
                 (0..most).filter_map(|i| line.get(i.min(line.len().saturating_sub(1))))
             });
-            json!({ "count": most, "places": places(points), "colour": style::TIE_ON_PAGE.hex() })
+            json!({ "count": most, "places": places(points), "colour": colour.hex() })
         };
-        all.iter().map(line).chain(self.loads()).collect()
-    }
-
-    /// Arrows of the loads.
-    fn loads(&self) -> Vec<Value> {
-        let arrows = LoadArrows::new(self.run.system, self.run.trajectory, self.run.skins);
-        let line = |(source, load)| {
-            let instants = self.instants.iter();
-            let lines: Vec<_> = instants.map(|&k| arrows.arrow(source, load, k)).collect();
-            let count = lines.first().map_or(0, Vec::len);
-            let colour = style::muscle(source).0.hex();
-            json!({ "count": count, "places": places(lines.iter().flatten()), "colour": colour })
-        };
-        arrows.loads().map(line).collect()
+        let ties = ties(self.run, self.instants).into_iter();
+        let ties = ties.map(|tie| line(&tie, style::TIE_ON_PAGE));
+        let arrows = arrows(self.run, self.instants).into_iter();
+        let arrows = arrows.map(|arrow| line(&arrow, arrow.colour));
+        ties.chain(arrows).collect()
     }
 
     /// Place of each joint, and of a point along its axis.

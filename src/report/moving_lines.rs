@@ -1,14 +1,96 @@
-//! Loads as arrows: along the force from the point on which it acts, against a face under a pressure, or about the axis of the joint as an
+//! Lines in space that move: springs and tendons, and arrows of loads.
+//!
+//! The arrow of a load is along the force from the point on which it acts, against a face under a pressure, or about the axis of the joint as an
 //! arc, as long as the load is large relative to its largest size in the motion. Surface charges have none.
 
-use crate::dynamics::trajectory::Trajectory;
+use crate::model::Component;
 use crate::model::components::{BlockLoad, Load, LoadPlace};
 use crate::model::system::{Attachment, JointKind, System};
+use crate::report::Run;
 use crate::report::body::extent_points;
-use crate::report::skins::{Skins, normal};
+use crate::report::skins::normal;
+use crate::report::style::{self, Colour};
 use crate::report::view::corners;
 use nalgebra::{Rotation3, Unit, Vector3};
 use std::collections::HashSet;
+
+/// Turns of a spring.
+const TURNS: usize = 8;
+/// Points of a turn.
+const PER_TURN: usize = 14;
+/// Radius of a spring, as a part of its length in the reference configuration.
+const COIL: f64 = 0.06;
+/// Straight ends of a spring, as parts of its length.
+const END: f64 = 0.12;
+
+/// A line that moves.
+pub(super) struct MovingLine<'a> {
+    /// Name of the component or the load.
+    pub(super) name: &'a str,
+    pub(super) colour: Colour,
+    /// Its points in mm at each of some instants.
+    pub(super) places: Vec<Vec<Vector3<f64>>>,
+}
+
+/// Springs, tendons and other components at some instants.
+pub(super) fn ties<'a>(run: &Run<'a>, instants: &[usize]) -> Vec<MovingLine<'a>> {
+    let tie = |component: &'a dyn Component| {
+        let points = component.points();
+        let line = |&k: &usize| {
+            let at = points
+                .iter()
+                .map(|p| run.trajectory.point(k, p, run.system));
+            let at: Vec<_> = at.collect();
+            match at[..] {
+                [from, to] if component.is_coiled() => {
+                    coil(&from, &to, COIL * (points[1].at - points[0].at).norm())
+                }
+                _ => at,
+            }
+        };
+        MovingLine {
+            name: component.name(),
+            colour: style::TIE,
+            places: instants.iter().map(line).collect(),
+        }
+    };
+    run.system.components.iter().map(tie).collect()
+}
+
+/// The arrows of loads at some instants, of each always as many points.
+pub(super) fn arrows<'a>(run: &Run<'a>, instants: &[usize]) -> Vec<MovingLine<'a>> {
+    let arrows = LoadArrows::new(run);
+    let line = |(source, load): (usize, &'a Load)| MovingLine {
+        name: &load.name,
+        colour: style::muscle(source).0,
+        places: instants
+            .iter()
+            .map(|&k| arrows.arrow(source, load, k))
+            .collect(),
+    };
+    arrows.loads().map(line).collect()
+}
+
+/// A helix between two points, with straight ends.
+fn coil(from: &Vector3<f64>, to: &Vector3<f64>, radius: f64) -> Vec<Vector3<f64>> {
+    let span = to - from;
+    let least = span.iamin();
+    let Some(across) = span.cross(&Vector3::ith(least, 1.0)).try_normalize(0.0) else {
+        return vec![*from, *to];
+    };
+    let other = span.normalize().cross(&across);
+    let count = TURNS * PER_TURN;
+    let turn = |i: usize| {
+        let s = i as f64 / count as f64;
+        let angle = std::f64::consts::TAU * TURNS as f64 * s;
+        // The radius grows from the axis and goes back to it within half a turn.
+        let grown = (2.0 * TURNS as f64 * s.min(1.0 - s)).min(1.0);
+        let out = across * angle.cos() + other * angle.sin();
+        from + span * (END + (1.0 - 2.0 * END) * s) + out * (radius * grown)
+    };
+    let turns = (0..=count).map(turn);
+    [*from].into_iter().chain(turns).chain([*to]).collect()
+}
 
 /// Length of the longest arrow, as a part of the size of the system.
 const LENGTH: f64 = 0.25;
@@ -22,10 +104,8 @@ const HEAD: [f64; 2] = [0.22, 0.4];
 const SEGMENTS: usize = 24;
 
 /// The loads of a motion, ready to be drawn at any instant.
-pub(super) struct LoadArrows<'a> {
-    system: &'a System,
-    trajectory: &'a Trajectory,
-    skins: &'a Skins,
+struct LoadArrows<'a> {
+    run: Run<'a>,
     /// For each load, the faces of the surface of its block at which its arrow is.
     faces: Vec<Vec<usize>>,
     /// Source of the first load.
@@ -38,39 +118,31 @@ pub(super) struct LoadArrows<'a> {
 
 impl<'a> LoadArrows<'a> {
     /// Of a motion; of one without inputs none.
-    pub(super) fn new(system: &'a System, trajectory: &'a Trajectory, skins: &'a Skins) -> Self {
+    fn new(run: &Run<'a>) -> Self {
+        let (system, rows) = (run.system, &run.trajectory.voltages);
         let first = system.first_load();
-        let count = system.components.loads.len();
+        let loads = &system.components.loads;
         let largest = |load: usize| {
-            let rows = trajectory.voltages.iter();
-            rows.map(|row| row[first + load].abs()).fold(0.0, f64::max)
+            let sizes = rows.iter().map(|row| row[first + load].abs());
+            sizes.fold(0.0, f64::max)
         };
+        let count = if rows.is_empty() { 0 } else { loads.len() };
         Self {
-            system,
-            trajectory,
-            skins,
-            faces: system
-                .components
-                .loads
-                .iter()
-                .map(|load| faces(system, load))
-                .collect(),
+            run: *run,
+            faces: loads.iter().map(|load| faces(system, load)).collect(),
             first,
-            largest: match trajectory.voltages.is_empty() {
-                true => Vec::new(),
-                false => (0..count).map(largest).collect(),
-            },
+            largest: (0..count).map(largest).collect(),
             length: LENGTH * size(system),
         }
     }
 
     /// Each load that ever acts and has an arrow, with its source.
-    pub(super) fn loads(&self) -> impl Iterator<Item = (usize, &'a Load)> + '_ {
+    fn loads(&self) -> impl Iterator<Item = (usize, &'a Load)> + '_ {
         let first = self.first;
-        let loads = self.largest.iter().zip(&self.system.components.loads);
+        let loads = self.largest.iter().zip(&self.run.system.components.loads);
         let has_arrow = |load: &Load| match &load.on {
             LoadPlace::Block { block, load } => {
-                !matches!(load, BlockLoad::Charge(_)) && *block < self.skins.list.len()
+                !matches!(load, BlockLoad::Charge(_)) && *block < self.run.skins.list.len()
             }
             LoadPlace::Point { .. } | LoadPlace::Joint(_) => true,
             LoadPlace::Muscle(_) => false,
@@ -82,11 +154,14 @@ impl<'a> LoadArrows<'a> {
     }
 
     /// Its arrow at an instant, in mm: always the same number of points.
-    pub(super) fn arrow(&self, source: usize, load: &Load, k: usize) -> Vec<Vector3<f64>> {
-        let rows = &self.trajectory.voltages;
+    fn arrow(&self, source: usize, load: &Load, k: usize) -> Vec<Vector3<f64>> {
+        let Run {
+            system, trajectory, ..
+        } = self.run;
+        let rows = &trajectory.voltages;
         let size = rows[k.min(rows.len() - 1)][source];
         let part = size / self.largest[source - self.first];
-        let place = |point: Attachment| self.trajectory.point(k, &point, self.system);
+        let place = |point: Attachment| trajectory.point(k, &point, system);
         let along = |point: Attachment, axis: &Vector3<f64>| {
             let tip = Attachment {
                 at: point.at + axis,
@@ -117,7 +192,7 @@ impl<'a> LoadArrows<'a> {
             }
             LoadPlace::Muscle(_) => return Vec::new(),
             LoadPlace::Joint(joint) => {
-                let joint = &self.system.joints[*joint];
+                let joint = &system.joints[*joint];
                 let on = |at| Attachment {
                     body: Some(joint.child),
                     at,
@@ -144,8 +219,8 @@ impl<'a> LoadArrows<'a> {
 
     /// The middle of some faces of a block at an instant, and the unit vector against their mean normal.
     fn middle(&self, block: usize, faces: &[usize], k: usize) -> (Vector3<f64>, Vector3<f64>) {
-        let skin = &self.skins.list[block];
-        let places = &skin.places[self.skins.position(k)];
+        let skin = &self.run.skins.list[block];
+        let places = &skin.places[self.run.skins.position(k)];
         let corners = faces
             .iter()
             .map(|&face| skin.quads[face].map(|corner| places[corner]));
