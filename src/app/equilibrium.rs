@@ -12,8 +12,8 @@ use crate::app::{blocks, fields};
 use crate::control::problem::{AtRest, Task};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
-    Continuation, DiscreteTrajectory, Equilibrium, Instability, UNSTABLE, continuation,
-    observations, out_of_domain,
+    DiscreteTrajectory, Equilibrium, Instability, PathStop, UNSTABLE, continuation, observations,
+    out_of_domain,
 };
 use crate::files::{Entries, Loaded, driven_voltages, read_problem, read_system};
 use crate::model::{Model, Response, Role, System};
@@ -174,21 +174,21 @@ fn command_output(summary: &Summary, rest: &Rest<'_>, folder: &Path) -> CommandO
     }
 }
 
-/// Follows the path for `points` equilibria and writes `path.csv`, `path.svg`, the fields, and figure and page of the last
+/// Follows the path for `count` equilibria and writes `path.csv`, `path.svg`, the fields, and figure and page of the last
 /// equilibrium before stability is lost, or of the last one.
 fn follow(
     request: &CommandInput,
     loaded: Option<&Loaded>,
     system: &System,
     task: &AtRest,
-    points: usize,
+    count: usize,
     began: Instant,
 ) -> Result<CommandOutput, CommandError> {
     let model = model_at_rest(system, task).map_err(CommandError::in_file(&request.input))?;
     let setup = began.elapsed().as_secs_f64();
     phase("following the path");
     let scalars = model.scalars(&task.voltages);
-    let found = match continuation(&model, &model.reference_coordinates(), &scalars, points) {
+    let found = match continuation(&model, &model.reference_coordinates(), &scalars, count) {
         Ok(found) => found,
         Err(error) => return refused(request, &error, "no equilibrium to start from"),
     };
@@ -226,7 +226,7 @@ fn follow(
         let why = status.word().replace('_', " ");
         format!("the path was not followed to its end ({why})")
     });
-    let count = counted(found.points.len(), "equilibrium").replace("equilibriums", "equilibria");
+    let count = counted(points(&found), "equilibrium").replace("equilibriums", "equilibria");
     Ok(CommandOutput {
         is_solved: stopped.is_none(),
         result: format!("{count}, {}", folder.display()),
@@ -235,38 +235,40 @@ fn follow(
 }
 
 /// Words on the losses of stability, and their places on the path.
-fn losses(found: &Continuation) -> impl Iterator<Item = (&'static str, String)> {
+fn losses(found: &[PathStop]) -> impl Iterator<Item = (&'static str, String)> {
     let place = |fraction: f64| format!("{:.6} % of the voltages", 100.0 * fraction);
-    let lost = found.lost.iter();
-    lost.map(move |&(_, fraction, kind)| (kind.words(), place(fraction)))
+    let words = move |stop: &PathStop| Some((stop.lost?.words(), place(stop.fraction)));
+    found.iter().filter_map(words)
 }
 
-/// Largest fraction of the voltages on the path: of its equilibria and of those where stability is lost between them.
-fn largest_fraction(found: &Continuation) -> f64 {
-    let lost = found.lost.iter().map(|&(_, fraction, _)| fraction);
-    let all = found.fractions.iter().copied().chain(lost);
-    all.fold(0.0, f64::max)
+/// Number of equilibria on the path, beside those where stability is lost between them.
+fn points(found: &[PathStop]) -> usize {
+    found.iter().filter(|stop| stop.lost.is_none()).count()
+}
+
+/// Largest fraction of the voltages on the path.
+fn largest_fraction(found: &[PathStop]) -> f64 {
+    found.iter().map(|stop| stop.fraction).fold(0.0, f64::max)
 }
 
 /// The path in `summary.json`.
-fn entries(found: &Continuation) -> Entries {
-    let lost = found.lost.iter().map(|&(_, fraction, kind)| {
-        Entries::default()
-            .with("fraction", fraction)
-            .with("kind", kind.key())
+fn entries(found: &[PathStop]) -> Entries {
+    let lost = found.iter().filter_map(|stop| {
+        let lost = Entries::default().with("fraction", stop.fraction);
+        Some(lost.with("kind", stop.lost?.key()))
     });
     Entries::default()
-        .with("points", found.points.len())
+        .with("points", points(found))
         .with("largest_fraction", largest_fraction(found))
         .with_each("lost", lost)
 }
 
 /// Rows of the page; `shown` is the fraction of the voltages of the equilibrium that is drawn.
-fn rows(found: &Continuation, shown: f64) -> Vec<(String, String)> {
+fn rows(found: &[PathStop], shown: f64) -> Vec<(String, String)> {
     let percent = |fraction: f64| format!("{:.6} %", 100.0 * fraction);
     let largest = percent(largest_fraction(found));
     let ends = [
-        ("equilibria", found.points.len().to_string()),
+        ("equilibria", points(found).to_string()),
         ("largest fraction of the voltages", largest),
     ];
     let shown = (
@@ -277,57 +279,25 @@ fn rows(found: &Continuation, shown: f64) -> Vec<(String, String)> {
     all.map(|(name, value)| (name.to_owned(), value)).collect()
 }
 
-/// An equilibrium of the path.
-struct Stop<'a> {
-    rest: &'a Equilibrium,
-    fraction: f64,
-    /// Instability by which stability is lost here.
-    lost: Option<Instability>,
-}
-
-impl<'a> Stop<'a> {
-    /// The equilibria followed, with those where stability is lost at their places.
-    fn all(found: &'a Continuation) -> Vec<Self> {
-        let mut stops = Vec::new();
-        for (k, (rest, &fraction)) in found.points.iter().zip(&found.fractions).enumerate() {
-            stops.push(Self {
-                rest,
-                fraction,
-                lost: None,
-            });
-            let here = found.lost.iter().zip(&found.limits);
-            for (&(_, fraction, kind), rest) in here.filter(|((index, ..), _)| *index == k) {
-                stops.push(Self {
-                    rest,
-                    fraction,
-                    lost: Some(kind),
-                });
-            }
-        }
-        stops
-    }
-}
-
 /// Equilibria as a motion by their fractions of the voltages.
-fn in_turn(model: &Model, stops: &[Stop<'_>]) -> DiscreteTrajectory {
-    let states = stops.iter().map(|stop| (stop.fraction, stop.rest));
+fn in_turn(model: &Model, stops: &[PathStop]) -> DiscreteTrajectory {
+    let states = stops.iter().map(|stop| (stop.fraction, &stop.rest));
     Equilibrium::in_turn(model, 0.0, states)
 }
 
 /// A path of equilibria as a motion in which time is the fraction of the voltages.
 struct EquilibriumPath<'a> {
     model: &'a Model,
-    stops: Vec<Stop<'a>>,
+    stops: &'a [PathStop],
     /// The first equilibrium stands at both ends of an interval of its own, so that each has its potentials.
     discrete: DiscreteTrajectory,
 }
 
 impl<'a> EquilibriumPath<'a> {
-    fn new(model: &'a Model, found: &'a Continuation) -> Self {
-        let stops = Stop::all(found);
+    fn new(model: &'a Model, stops: &'a [PathStop]) -> Self {
         Self {
             model,
-            discrete: in_turn(model, &stops),
+            discrete: in_turn(model, stops),
             stops,
         }
     }
@@ -352,7 +322,7 @@ impl<'a> EquilibriumPath<'a> {
             discrete,
         } = self;
         let shown = self.shown();
-        let rest = stops[shown].rest;
+        let rest = &stops[shown].rest;
         let state =
             DiscreteTrajectory::in_steps(1.0, vec![rest.z.clone()], vec![rest.scalars.clone()]);
         let motion = Trajectory::from_discrete(model, &state);
@@ -393,7 +363,7 @@ impl<'a> EquilibriumPath<'a> {
         let mut add = |name: String, unit: &'static str, values: Vec<f64>| {
             columns.push(Column { name, unit, values });
         };
-        let each = |value: &dyn Fn(&Stop<'_>) -> f64| stops.iter().map(value).collect();
+        let each = |value: &dyn Fn(&PathStop) -> f64| stops.iter().map(value).collect();
         add("fraction".to_owned(), "", each(&|stop| stop.fraction));
         let voltages = model.variables.with(Role::Voltage);
         for (voltage, s) in voltages.iter().zip(model.variables.range(Role::Voltage)) {
@@ -404,9 +374,9 @@ impl<'a> EquilibriumPath<'a> {
             column.values.remove(0);
             add(column.name, column.unit, column.values);
         }
-        let unstable = |stop: &Stop<'_>| stop.rest.unstable.map_or(f64::NAN, |n| n as f64);
+        let unstable = |stop: &PathStop| stop.rest.unstable.map_or(f64::NAN, |n| n as f64);
         add("unstable_directions".to_owned(), "", each(&unstable));
-        let lost = |stop: &Stop<'_>| f64::from(u8::from(stop.lost.is_some()));
+        let lost = |stop: &PathStop| f64::from(u8::from(stop.lost.is_some()));
         add("stability_lost".to_owned(), "", each(&lost));
         Observations { columns }
     }

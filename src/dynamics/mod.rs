@@ -37,9 +37,8 @@ mod updates;
 
 pub use energies::{Energies, Work, energies};
 pub use equilibrium::{
-    Continuation, Equilibrium, Instability, Load, LowestMode, Mode, Route, Softening,
-    StabilityLoss, UNSTABLE, continuation, equilibrium, lowest_mode, stable_equilibrium,
-    stable_equilibrium_by,
+    Equilibrium, Instability, Load, LowestMode, Mode, PathStop, Route, Softening, StabilityLoss,
+    UNSTABLE, continuation, equilibrium, lowest_mode, stable_equilibrium, stable_equilibrium_by,
 };
 pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};

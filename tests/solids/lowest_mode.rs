@@ -24,7 +24,8 @@ impl Tally {
         let model = Model::new(system, None, 1.0, &[]).unwrap();
         let start = model.reference_coordinates();
         let path = continuation(&model, &start, &[voltage], steps).unwrap();
-        for (point, fraction) in path.points.iter().zip(&path.fractions) {
+        for stop in path.iter().filter(|stop| stop.lost.is_none()) {
+            let (point, fraction) = (&stop.rest, stop.fraction);
             let expected = point.unstable.expect("factors give the inertia");
             let Some(mode) = lowest_mode(&model, &point.z, &point.scalars) else {
                 println!("{fraction:.4}: inertia {expected}, not found");

@@ -3,8 +3,8 @@
 use crate::common::solid::{DRIVEN, block, dielectric, electrode, held, placed, system};
 use nalgebra::Vector3;
 use proboscis::dynamics::{
-    DiscreteTrajectory, EquilibriumError, Instability, Start, StepError, continuation, equilibrium,
-    simulate,
+    DiscreteTrajectory, EquilibriumError, Instability, PathStop, Start, StepError, continuation,
+    equilibrium, simulate,
 };
 use proboscis::mesh::grid::Grid;
 use proboscis::model::system::{
@@ -310,20 +310,25 @@ fn a_column_buckles_while_it_may_stay_straight() {
     let model = column();
     let largest = 6e4;
     let path = continuation(&model, &model.coordinates_at(&[]), &[largest], 60).unwrap();
-    println!("{:?} of {:?}", path.lost, path.fractions.last());
-    let &(index, fraction, kind) = path.lost.first().expect("stability is lost");
-    assert_eq!(kind, Instability::Buckling);
+    let is_lost = |stop: &PathStop| stop.lost.is_some();
+    let index = path.iter().position(is_lost).expect("stability is lost");
+    let (before, lost) = (&path[..index], &path[index]);
+    println!("{} of {}", lost.fraction, path[path.len() - 1].fraction);
+    assert_eq!(lost.lost, Some(Instability::Buckling));
     assert!(
-        path.points[..=index]
+        before
             .iter()
-            .all(|p| p.is_stable() == Some(true))
+            .all(|stop| stop.rest.is_stable() == Some(true))
     );
     // Both neighbours enclose the voltage where it buckles.
     let stable_at = |voltage: f64| {
         let found = equilibrium(&model, &model.coordinates_at(&[]), &[voltage]).unwrap();
         found.is_stable().unwrap()
     };
-    let (mut low, mut high) = (path.fractions[index] * largest, fraction * largest);
+    let (mut low, mut high) = (
+        before[index - 1].fraction * largest,
+        lost.fraction * largest,
+    );
     assert!(low < high && stable_at(low) && !stable_at(1.000_001 * high));
     for _ in 0..20 {
         let middle = 0.5 * (low + high);
@@ -383,8 +388,9 @@ fn buckling_is_found_where_stability_is_lost() {
     let model = column();
     let start = model.coordinates_at(&[]);
     let path = continuation(&model, &start, &[6e4], 60).unwrap();
-    let (_, fraction, kind) = path.lost[0];
-    assert_eq!(kind, Instability::Buckling);
+    let mut lost = path.iter().filter(|stop| stop.lost.is_some());
+    let &PathStop { fraction, lost, .. } = lost.next().unwrap();
+    assert_eq!(lost, Some(Instability::Buckling));
     for (part, stable) in [(0.999, true), (1.001, false)] {
         let found = equilibrium(&model, &start, &[part * fraction * 6e4]).unwrap();
         assert_eq!(found.is_stable(), Some(stable), "{part} of {fraction}");

@@ -5,8 +5,8 @@ use crate::common::stacks::{cubes, rubber, scattered};
 use crate::multigrid::{MULTIGRID, apart};
 use nalgebra::Vector3;
 use proboscis::dynamics::{
-    EquilibriumError, MultigridUse, Route, Softening, Start, StepError, Stepper, continuation,
-    stable_equilibrium, stable_equilibrium_by,
+    EquilibriumError, MultigridUse, PathStop, Route, Softening, Start, StepError, Stepper,
+    continuation, stable_equilibrium, stable_equilibrium_by,
 };
 use proboscis::files::read_system;
 use proboscis::model::Model;
@@ -155,18 +155,24 @@ fn a_stopped_path_loses_no_stability() {
     let start = model.reference_coordinates();
     let path = |points: usize| continuation(&model, &start, &[1e6], points).unwrap();
     let whole = path(16);
-    let (before, fraction, _) = whole.lost[0];
+    let is_lost = |stop: &&PathStop| stop.lost.is_some();
+    let before = whole.iter().take_while(|stop| !is_lost(stop)).count() - 1;
+    let fraction = whole[before + 1].fraction;
+    let followed = |path: &[PathStop]| -> Vec<f64> {
+        let points = path.iter().filter(|stop| !is_lost(stop));
+        points.map(|stop| stop.fraction).collect()
+    };
     let (_, first) = within(u64::MAX, || path(before + 1));
     let (_, asked) = within(u64::MAX, || path(before + 2));
     assert!(asked > first + 10);
     let mut stops = 0;
     for allowed in (first..=asked).step_by((asked - first) as usize / 4) {
         let (stopped, _) = within(allowed, || path(before + 2));
-        let points = stopped.points.len();
-        assert_eq!(stopped.fractions, whole.fractions[..points]);
-        stops += usize::from(points <= before + 1);
-        for (_, found, _) in stopped.lost {
-            assert_eq!(found, fraction, "question {allowed} of {asked}");
+        let points = followed(&stopped);
+        assert_eq!(points, followed(&whole)[..points.len()]);
+        stops += usize::from(points.len() <= before + 1);
+        for lost in stopped.iter().filter(is_lost) {
+            assert_eq!(lost.fraction, fraction, "question {allowed} of {asked}");
         }
     }
     assert!(stops > 2, "{stops}");

@@ -21,4 +21,4 @@ pub use rest_state::{
     Equilibrium, Instability, Load, LowestMode, Mode, Route, Softening, StabilityLoss, UNSTABLE,
 };
 pub use softest_mode::lowest_mode;
-pub use stable::{Continuation, continuation, stable_equilibrium, stable_equilibrium_by};
+pub use stable::{PathStop, continuation, stable_equilibrium, stable_equilibrium_by};

@@ -403,20 +403,19 @@ pub(super) fn confirmed(
     }
 }
 
-/// Equilibria along a path.
+/// An equilibrium of a path.
 #[derive(Clone, Debug)]
-pub struct Continuation {
-    /// Fraction of the voltages at each point.
-    pub fractions: Vec<f64>,
-    /// The equilibria.
-    pub points: Vec<Equilibrium>,
-    /// Index of the last point before each loss of stability, the exact fraction there, and its kind.
-    pub lost: Vec<(usize, f64, Instability)>,
-    /// The equilibria there.
-    pub limits: Vec<Equilibrium>,
+pub struct PathStop {
+    /// The equilibrium.
+    pub rest: Equilibrium,
+    /// Fraction of the voltages.
+    pub fraction: f64,
+    /// Kind of instability by which stability is lost here; none of a point of the path.
+    pub lost: Option<Instability>,
 }
 
-/// Follows the path of equilibria from zero voltage by arc length for `steps` points, past limit points.
+/// Follows the path of equilibria from zero voltage by arc length for `steps` points, past limit points; where stability is lost between two of
+/// them there is one more stop.
 ///
 /// # Errors
 /// There is no equilibrium without voltages, or nothing holds the system.
@@ -425,7 +424,7 @@ pub fn continuation(
     start: &[f64],
     voltages: &[f64],
     steps: usize,
-) -> Result<Continuation, EquilibriumError> {
+) -> Result<Vec<PathStop>, EquilibriumError> {
     // At zero voltage nothing depends on the fraction to first order: the path starts a little further.
     let ramp = Ramp {
         load: Load::Voltages,
@@ -437,17 +436,17 @@ pub fn continuation(
     let [_, scalars] = model.variables.split(&first.scalars);
     let state = statics.state(&first.z, scalars);
     let mut path = path(&mut statics, ramp);
-    let mut out = Continuation {
-        fractions: vec![FIRST],
-        points: vec![first],
-        lost: Vec::new(),
-        limits: Vec::new(),
-    };
+    let mut out = vec![PathStop {
+        rest: first,
+        fraction: FIRST,
+        lost: None,
+    }];
+    let mut points = 1;
     let Some(mut here) = path.point(state, FIRST, None) else {
         return Ok(out);
     };
     let mut step = FIRST;
-    while out.points.len() < steps {
+    while points < steps {
         let Some(next) = path.advance(&here, step) else {
             step *= 0.5;
             if step < SMALLEST {
@@ -455,22 +454,24 @@ pub fn continuation(
             }
             continue;
         };
-        let index = out.points.len() - 1;
         let limit = path.lost(&here, step, &next);
         // A search that was stopped ends elsewhere than where stability is lost.
         if stop::reason().is_some() {
             break;
         }
-        let mut rest = |point: &PathPoint| {
+        let mut add = |point: &PathPoint, lost: Option<Instability>| {
             let loaded = ramp.apply(path.statics, point.fraction);
-            Equilibrium::on_path(path.statics, &point.state, &loaded, Route::Loads)
+            out.push(PathStop {
+                rest: Equilibrium::on_path(path.statics, &point.state, &loaded, Route::Loads),
+                fraction: point.fraction,
+                lost,
+            });
         };
         if let Some((point, kind)) = limit {
-            out.limits.push(rest(&point));
-            out.lost.push((index, point.fraction, kind));
+            add(&point, Some(kind));
         }
-        out.points.push(rest(&next));
-        out.fractions.push(next.fraction);
+        add(&next, None);
+        points += 1;
         here = next;
         step = (1.5 * step).min(LARGEST);
     }
