@@ -31,9 +31,11 @@ pub(super) fn write(
     }
     let instants = spread(discrete.z.len(), MOST);
     let mut series = Series::new("trajectory", FOLDER, origin, files)?;
-    let mut states = SolidStates::new(model, discrete);
     for &k in &instants {
-        series.add(discrete.times[k] / 1e3, &states.at(k), files)?;
+        let state = SolidState::new(model, discrete, k);
+        let blocks = (0..model.solids.len()).map(|b| grid(model, b, &state));
+        let blocks: Vec<_> = blocks.collect();
+        series.add(discrete.times[k] / 1e3, &blocks, files)?;
     }
     series.finish(files)?;
     Ok(instants.len())
@@ -45,10 +47,10 @@ pub(super) fn largest_nominal_field(
     discrete: &DiscreteTrajectory,
     k: usize,
 ) -> Option<f64> {
-    let mut states = SolidStates::new(model, discrete);
-    let state = states.place(k);
+    let state = SolidState::new(model, discrete, k);
     let each = model.solids.iter().flat_map(|block| {
-        let (places, potentials) = (block.places(&state.here.x), block.potentials(state.scalars));
+        let places = block.places(&state.here.x);
+        let potentials = block.potentials(&state.scalars);
         let elements = (0..block.shapes.len()).filter(|&e| block.is_dielectric[e]);
         let field = move |e: usize| {
             let fields = block.fields(e, &places, &potentials);
@@ -68,75 +70,41 @@ fn spread(count: usize, most: usize) -> Vec<usize> {
     (0..most).map(place).collect()
 }
 
-/// The instants of a motion, one at a time.
-struct SolidStates<'m> {
-    model: &'m Model,
-    discrete: &'m DiscreteTrajectory,
-    here: Configuration,
-    there: Configuration,
-    none: Vec<f64>,
-}
-
 /// One instant: its places, those of the other end of its interval and the time to there, voltages and potentials.
-struct SolidState<'s> {
-    here: &'s Configuration,
-    there: Option<(&'s Configuration, f64)>,
-    scalars: &'s [f64],
+struct SolidState {
+    here: Configuration,
+    there: Option<(Configuration, f64)>,
+    scalars: Vec<f64>,
 }
 
-impl<'m> SolidStates<'m> {
-    fn new(model: &'m Model, discrete: &'m DiscreteTrajectory) -> Self {
-        Self {
-            model,
-            discrete,
-            here: model.action.map.instant(),
-            there: model.action.map.instant(),
-            none: vec![0.0; model.action.intervals.scalars],
-        }
-    }
-
-    fn place(&mut self, k: usize) -> SolidState<'_> {
-        let Self {
-            model, discrete, ..
-        } = *self;
-        let last = discrete.z.len() - 1;
+impl SolidState {
+    fn new(model: &Model, discrete: &DiscreteTrajectory, k: usize) -> Self {
+        let placed = |k: usize| model.action.map.placed(&discrete.z[k]);
         let other = match k {
-            0 => 1.min(last),
+            0 => 1.min(discrete.z.len() - 1),
             _ => k - 1,
         };
-        for (instant, k) in [(&mut self.here, k), (&mut self.there, other)] {
-            instant.z.copy_from_slice(&discrete.z[k]);
-            model.action.map.place(instant);
-        }
         let time = discrete.times[other] - discrete.times[k];
-        let scalars = discrete.scalars.get(k.saturating_sub(1));
-        SolidState {
-            here: &self.here,
-            there: (other != k).then_some((&self.there, time)),
-            scalars: scalars.unwrap_or(&self.none),
+        let scalars = discrete.scalars.get(k.saturating_sub(1)).cloned();
+        Self {
+            here: placed(k),
+            there: (other != k).then(|| (placed(other), time)),
+            scalars: scalars.unwrap_or_else(|| vec![0.0; model.action.intervals.scalars]),
         }
-    }
-
-    /// The blocks at an instant, as shown.
-    fn at(&mut self, k: usize) -> Vec<UnstructuredGrid<'m>> {
-        let model = self.model;
-        let state = self.place(k);
-        let blocks = 0..model.solids.len();
-        blocks.map(|b| grid(model, b, &state)).collect()
     }
 }
 
 /// A block at an instant, as shown.
-fn grid<'m>(model: &'m Model, number: usize, state: &SolidState<'_>) -> UnstructuredGrid<'m> {
+fn grid<'m>(model: &'m Model, number: usize, state: &SolidState) -> UnstructuredGrid<'m> {
     let block = &model.solids[number];
     let mesh = &block.solid.mesh;
     let places = block.places(&state.here.x);
-    let potentials = block.potentials(state.scalars);
-    let velocities = state.there.map(|(there, time)| {
+    let potentials = block.potentials(&state.scalars);
+    let velocities = state.there.as_ref().map(|(there, time)| {
         let others = block.places(&there.x);
         let pairs = others.iter().zip(&places);
         pairs
-            .map(|(there, here)| (there - here) / time)
+            .map(|(there, here)| (there - here) / *time)
             .collect::<Vec<_>>()
     });
     let moved = places.iter().zip(&mesh.nodes);
@@ -152,16 +120,24 @@ fn grid<'m>(model: &'m Model, number: usize, state: &SolidState<'_>) -> Unstruct
         point_data.push(field("potential [V]", 1, values));
     }
     let is_dielectric = block.is_dielectric.contains(&true);
-    let elements = 0..block.shapes.len();
-    let branches = elements.map(|e| model.branch_stress(number, e, state.here));
-    let branches = branches.collect::<Vec<_>>();
-    let velocities = velocities.as_deref();
-    let cell_data = cells(number, block, &places, &potentials, velocities, &branches);
+    let fields = |e: usize| {
+        let mut fields = block.fields(e, &places, &potentials);
+        if let Some(stress) = model.branch_stress(number, e, &state.here) {
+            fields.stress += stress;
+        }
+        if let (Some(velocities), Some(viscosity)) = (&velocities, block.material(e).viscosity) {
+            let nodes = mesh.hexahedra[e];
+            let (x, v) = (nodes.map(|n| places[n]), nodes.map(|n| velocities[n]));
+            fields.stress += Viscosity { viscosity }.stress(&block.shapes[e], &x, &v);
+        }
+        fields
+    };
+    let fields: Vec<Fields> = (0..block.shapes.len()).map(fields).collect();
     UnstructuredGrid {
         points: places.iter().map(|x| x * 1e-3).collect(),
         hexahedra: &mesh.hexahedra,
         point_data,
-        cell_data: cell_data
+        cell_data: cells(number, block, &fields)
             .into_iter()
             .filter(|field| is_dielectric || !field.name.starts_with("electric"))
             .collect(),
@@ -169,33 +145,7 @@ fn grid<'m>(model: &'m Model, number: usize, state: &SolidState<'_>) -> Unstruct
 }
 
 /// Quantities of the elements.
-fn cells(
-    number: usize,
-    block: &SolidBlock,
-    places: &[Vector],
-    potentials: &[f64],
-    velocities: Option<&[Vector]>,
-    branches: &[Option<Matrix>],
-) -> Vec<Field<'static>> {
-    let count = block.shapes.len();
-    let mut all: Vec<Fields> = (0..count)
-        .map(|e| block.fields(e, places, potentials))
-        .collect();
-    for (fields, stress) in all.iter_mut().zip(branches) {
-        if let Some(stress) = stress {
-            fields.stress += stress;
-        }
-    }
-    if let Some(velocities) = velocities {
-        for (e, fields) in all.iter_mut().enumerate() {
-            let Some(viscosity) = block.material(e).viscosity else {
-                continue;
-            };
-            let nodes = block.solid.mesh.hexahedra[e];
-            let (x, v) = (nodes.map(|n| places[n]), nodes.map(|n| velocities[n]));
-            fields.stress += Viscosity { viscosity }.stress(&block.shapes[e], &x, &v);
-        }
-    }
+fn cells(number: usize, block: &SolidBlock, all: &[Fields]) -> Vec<Field<'static>> {
     let vectors = |name, of: fn(&Fields) -> &Vector| {
         field(name, 3, all.iter().flat_map(|f| components(of(f), 1e3)))
     };
@@ -212,7 +162,7 @@ fn cells(
         numbers("von Mises stress [Pa]", |f| 1e6 * f.von_mises()),
         numbers("J", |f| f.jacobian_determinant),
         field("region", 1, regions),
-        field("block", 1, (0..count).map(|_| number as f64)),
+        field("block", 1, all.iter().map(|_| number as f64)),
     ]
 }
 

@@ -90,10 +90,8 @@ impl Skins {
         let places = parts.iter().map(|(skin, _)| skin.reference.len()).sum();
         let instants = shown(&discrete.times, places);
         let none = vec![0.0; model.action.intervals.scalars];
-        let mut instant = model.action.map.instant();
         for &k in &instants {
-            instant.z.copy_from_slice(&discrete.z[k]);
-            model.action.map.vectors(&mut instant);
+            let instant = model.action.map.placed(&discrete.z[k]);
             let scalars = discrete.scalars.get(k.saturating_sub(1)).unwrap_or(&none);
             for (b, (skin, nodes)) in parts.iter_mut().enumerate() {
                 let block = &model.solids[b];
