@@ -101,17 +101,9 @@ fn rows_of(data: &Value) -> Vec<[String; 2]> {
     of_one.chain(of_several).collect()
 }
 
-/// A panel of some results.
-struct Shared {
-    chart: Value,
-    title: Value,
-    panel: Value,
-    series: Vec<Value>,
-}
-
 /// All charts; each quantity over time has a panel of its own, other plots keep theirs.
 fn charts(results: &[(String, Value)]) -> Vec<Value> {
-    let mut shared: Vec<Shared> = Vec::new();
+    let mut charts = Vec::new();
     for (r, (name, data)) in results.iter().enumerate() {
         for (chart, panel, series) in curves(data) {
             let is_over_time = chart["time"] == true;
@@ -133,38 +125,32 @@ fn charts(results: &[(String, Value)]) -> Vec<Value> {
             };
             // Results are told apart by colour alone.
             curve["dashed"] = (!is_over_time && series["dashed"] == true).into();
-            let same = |one: &&mut Shared| one.chart["title"] == of_chart && one.title == *title;
-            match shared.iter_mut().find(same) {
-                Some(one) => one.series.push(curve),
-                None => shared.push(Shared {
-                    chart: json!({ "title": of_chart, "time": chart["time"], "kind": "panels" }),
-                    title: title.clone(),
-                    panel: panel.clone(),
-                    series: vec![curve],
-                }),
-            }
+            let shared = titled(
+                &mut charts,
+                json!({ "title": of_chart, "time": chart["time"], "kind": "panels", "panels": [] }),
+            );
+            let shared = titled(
+                entries(&mut shared["panels"]),
+                json!({ "title": title, "x": panel["x"], "y": panel["y"], "equal": panel["equal"], "series": [] }),
+            );
+            entries(&mut shared["series"]).push(curve);
         }
     }
-    let mut charts: Vec<(Value, Vec<Value>)> = Vec::new();
-    for Shared {
-        chart,
-        title,
-        mut panel,
-        series,
-    } in shared
-    {
-        panel["title"] = title;
-        panel["series"] = series.into();
-        match charts.iter_mut().find(|(other, _)| *other == chart) {
-            Some((_, panels)) => panels.push(panel),
-            None => charts.push((chart, vec![panel])),
-        }
+    charts
+}
+
+/// The value of a list that has the title of a new one; the new one where there is none.
+fn titled(list: &mut Vec<Value>, new: Value) -> &mut Value {
+    let found = list.iter().position(|one| one["title"] == new["title"]);
+    let place = found.unwrap_or(list.len());
+    if found.is_none() {
+        list.push(new);
     }
-    let whole = charts.into_iter().map(|(mut chart, panels)| {
-        chart["panels"] = panels.into();
-        chart
-    });
-    whole.collect()
+    &mut list[place]
+}
+
+fn entries(list: &mut Value) -> &mut Vec<Value> {
+    list.as_array_mut().expect("it is a list")
 }
 
 fn list(value: &Value) -> std::slice::Iter<'_, Value> {
