@@ -6,12 +6,14 @@ use crate::app::request::{CommandInput, CommandOutput, key};
 use crate::app::task::read;
 use crate::control::problem::{Ahead, ControlTask, Task};
 use crate::feedback::{Measured, Reading};
+use crate::files::Entries;
 use crate::files::feedback::{factor_of, unit_of};
 use crate::model::System;
 use crate::nlp::Nlp;
 use crate::tasks::{self, CheckResult};
 use crate::workflow::program::with_joined;
 use crate::workflow::receding::{Horizon, RecedingHorizon, Source};
+use serde::Serialize;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -88,7 +90,7 @@ pub(super) fn joined<R>(
 /// # Errors
 /// The input is wrong.
 pub fn check(request: &CommandInput) -> Result<CommandOutput, CommandError> {
-    let found = checked(request, None)?;
+    let found = compared(request, None)?;
     Ok(CommandOutput {
         is_solved: found.agrees,
         result: found.message,
@@ -100,7 +102,38 @@ pub fn check(request: &CommandInput) -> Result<CommandOutput, CommandError> {
 ///
 /// # Errors
 /// As of [`check`].
-pub fn checked(request: &CommandInput, text: Option<&str>) -> Result<CheckResult, CommandError> {
+pub fn checked(
+    request: &CommandInput,
+    text: Option<&str>,
+) -> Result<impl Serialize + use<>, CommandError> {
+    let found = compared(request, text)?;
+    let report = &found.report;
+    let wrong = report.wrong.iter().zip(&found.effects);
+    let wrong = wrong.map(|(entry, effects)| {
+        Entries::default()
+            .with("matrix", format!("{:?}", entry.matrix).to_lowercase())
+            .with("row", &entry.row)
+            .with("column", &entry.column)
+            .with("analytic", entry.analytic)
+            .with("difference", entry.difference)
+            .with("error", entry.error)
+            .with("effects", effects)
+    });
+    let errors = Entries::default()
+        .with("gradient", report.gradient)
+        .with("jacobian", report.jacobian)
+        .with("hessian", report.hessian);
+    Ok(Entries::default()
+        .with("agrees", found.agrees)
+        .with("message", &found.message)
+        .with("errors", errors)
+        .with("checked", report.checked)
+        .with("variables", found.variables)
+        .with("unchecked", &report.unchecked)
+        .with_each("wrong", wrong))
+}
+
+fn compared(request: &CommandInput, text: Option<&str>) -> Result<CheckResult, CommandError> {
     let began = Instant::now();
     let loaded = read(&request.input, text, &request.set)?;
     let left = |seconds| seconds - began.elapsed().as_secs_f64();

@@ -8,14 +8,13 @@ use crate::ipopt::LinearSolver;
 use crate::math::{Random, Signal, shortest};
 use crate::mesh::Mesh;
 use crate::model::{Coordinates, Model, System};
-use crate::nlp::differences::{Matrix, WrongEntry};
-use crate::nlp::{Nlp, differences};
+use crate::nlp::Nlp;
+use crate::nlp::differences::{self, Report};
 use crate::stop;
 use crate::stop::TimeLimit;
 use crate::workflow::optimum::Budget;
 use crate::workflow::program::{Counted, Prepared, prepare, resolve};
 use crate::workflow::{WorkflowError, effects};
-use serde::Serialize;
 use std::collections::{BTreeMap, HashMap};
 
 /// Noise on each variable, relative to its size.
@@ -26,55 +25,20 @@ const SEED: u64 = 7;
 const INTERVALS: usize = 6;
 
 /// Result of a comparison of derivatives with differences.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug)]
 pub struct CheckResult {
     /// True if all were compared, and none is wrong.
     pub agrees: bool,
     /// The same in words.
     pub message: String,
-    /// Greatest relative errors.
-    pub errors: GreatestErrors,
-    /// Variables along which they were compared.
-    pub checked: usize,
+    /// Greatest relative errors, the entries that are wrong, and the variables along which they were compared, and were not.
+    pub report: Report,
+    /// Effects that couple row and column of each wrong entry.
+    pub effects: Vec<Vec<String>>,
     /// Variables of the program.
     pub variables: usize,
-    /// Variables near which a value does not exist.
-    pub unchecked: Vec<String>,
-    /// Entries that are wrong, the worst first, twenty at most.
-    pub wrong: Vec<WrongDerivative>,
     /// Notes on each.
-    #[serde(skip)]
     pub notes: Vec<String>,
-}
-
-/// Greatest relative errors of derivatives.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub struct GreatestErrors {
-    /// Of the objective.
-    pub gradient: f64,
-    /// Of the constraints.
-    pub jacobian: f64,
-    /// Of the Lagrangian, of second order.
-    pub hessian: f64,
-}
-
-/// A derivative that is wrong.
-#[derive(Clone, Debug, Serialize)]
-pub struct WrongDerivative {
-    /// `gradient`, `jacobian` or `hessian`.
-    pub matrix: &'static str,
-    /// Name of the row.
-    pub row: String,
-    /// The variable of the column.
-    pub column: String,
-    /// Value given by the program.
-    pub analytic: f64,
-    /// Value from differences.
-    pub difference: f64,
-    /// Relative error.
-    pub error: f64,
-    /// Effects that couple row and column.
-    pub effects: Vec<String>,
 }
 
 /// Compares gradient, Jacobian and Hessian of a task with differences, within `seconds`; they do not agree where an entry is wrong.
@@ -112,13 +76,13 @@ pub fn check(
         stopped.is_some()
     });
     let mut notes: Vec<String> = report.to_string().lines().map(str::to_owned).collect();
-    let mut wrong = Vec::new();
-    for (entry, note) in report.wrong.iter().zip(&mut notes[1..]) {
-        let effects = coupling(&program, &model, &entry.row, &entry.column);
+    let wrong = report.wrong.iter();
+    let effects = wrong.map(|entry| coupling(&program, &model, &entry.row, &entry.column));
+    let effects: Vec<Vec<String>> = effects.collect();
+    for (effects, note) in effects.iter().zip(&mut notes[1..]) {
         if !effects.is_empty() {
             note.push_str(&format!(" [{}]", effects.join(", ")));
         }
-        wrong.push(wrong_derivative(entry, effects));
     }
     let worst = report.gradient.max(report.jacobian).max(report.hessian);
     let of = match report.checked == x.len() {
@@ -140,15 +104,9 @@ pub fn check(
     Ok(CheckResult {
         agrees: report.is_consistent(),
         message,
-        errors: GreatestErrors {
-            gradient: report.gradient,
-            jacobian: report.jacobian,
-            hessian: report.hessian,
-        },
-        checked: report.checked,
+        report,
+        effects,
         variables: x.len(),
-        unchecked: report.unchecked,
-        wrong,
         notes,
     })
 }
@@ -178,37 +136,21 @@ fn all_motions(motions: Motions, seconds: Option<f64>) -> Result<CheckResult, Wo
 impl CheckResult {
     /// Both as one.
     fn with(mut self, mut other: Self) -> Self {
-        self.unchecked.append(&mut other.unchecked);
-        self.wrong.append(&mut other.wrong);
+        let (report, its) = (&mut self.report, &mut other.report);
+        report.gradient = report.gradient.max(its.gradient);
+        report.jacobian = report.jacobian.max(its.jacobian);
+        report.hessian = report.hessian.max(its.hessian);
+        report.checked += its.checked;
+        report.unchecked.append(&mut its.unchecked);
+        report.wrong.append(&mut its.wrong);
+        self.effects.append(&mut other.effects);
         self.notes.append(&mut other.notes);
         Self {
             agrees: self.agrees && other.agrees,
             message: format!("{}\n{}", self.message, other.message),
-            errors: GreatestErrors {
-                gradient: self.errors.gradient.max(other.errors.gradient),
-                jacobian: self.errors.jacobian.max(other.errors.jacobian),
-                hessian: self.errors.hessian.max(other.errors.hessian),
-            },
-            checked: self.checked + other.checked,
             variables: self.variables + other.variables,
             ..self
         }
-    }
-}
-
-fn wrong_derivative(entry: &WrongEntry, effects: Vec<String>) -> WrongDerivative {
-    WrongDerivative {
-        matrix: match entry.matrix {
-            Matrix::Gradient => "gradient",
-            Matrix::Jacobian => "jacobian",
-            Matrix::Hessian => "hessian",
-        },
-        row: entry.row.clone(),
-        column: entry.column.clone(),
-        analytic: entry.analytic,
-        difference: entry.difference,
-        error: entry.error,
-        effects,
     }
 }
 

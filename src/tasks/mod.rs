@@ -10,7 +10,7 @@ pub mod simulate;
 pub mod solve;
 pub(crate) mod solve_messages;
 
-pub use check::{CheckResult, GreatestErrors, WrongDerivative, check};
+pub use check::{CheckResult, check};
 pub use equilibrium::{EquilibriumResult, EquilibriumTaskError, equilibrium};
 pub use simulate::{
     Assessment, DisturbedLoops, SimulationRequest, SimulationResult, disturbed, simulate,
