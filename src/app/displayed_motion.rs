@@ -3,8 +3,7 @@
 use std::collections::HashSet;
 use std::io;
 
-use serde::Serialize;
-
+use crate::app::summary::{ShownPart, Summary};
 use crate::dynamics::DiscreteTrajectory;
 use crate::dynamics::trajectory::{Observations, Trajectory};
 use crate::files::npz::NpzWriter;
@@ -30,18 +29,7 @@ pub(super) struct DisplayedMotion {
     /// Columns of the table.
     pub(super) tabulated: Observations,
     pub(super) skins: Skins,
-    /// Size of the displayed part, where not all instants are shown.
-    pub(super) part: Option<ShownPart>,
-    /// Notes on it.
-    pub(super) notes: Vec<String>,
     sampled: Option<Sampled>,
-}
-
-/// Size of the displayed part of a motion.
-#[derive(Clone, Copy, Debug, Serialize)]
-pub(super) struct ShownPart {
-    instants: usize,
-    of: usize,
 }
 
 /// A motion with its observations.
@@ -55,7 +43,7 @@ pub(super) struct Motion<'a> {
 
 impl DisplayedMotion {
     /// Returns the displayed part of a motion: all that is asked for, or where nothing is asked all of it, and of a long simulation fewer instants,
-    /// between which the motion is straight to the eye; its complete tables are then a file of the result.
+    /// between which the motion is straight to the eye; its complete tables are then a file of the result. The summary tells which part it is.
     ///
     /// # Errors
     /// That file cannot be written.
@@ -63,6 +51,7 @@ impl DisplayedMotion {
         motion: Motion<'_>,
         output: &Output,
         is_simulated: bool,
+        summary: &mut Summary,
         files: &mut FileSet,
     ) -> Result<Self, WriteError> {
         let Motion {
@@ -90,46 +79,44 @@ impl DisplayedMotion {
         let is_complete_beside = sampled.is_some() && !is_asked;
         let complete =
             || is_complete_beside.then(|| tables(&model.system, trajectory, observations));
-        let ((trajectory_shown, observations_shown, skins), complete) = join(choose, complete);
-        let of = discrete.times.len();
-        let mut shown = Self {
-            trajectory: trajectory_shown,
-            observations: observations_shown,
-            tabulated: Observations::default(),
-            skins,
-            part: sampled.as_ref().map(|sampled| ShownPart {
-                instants: sampled.instants.len(),
-                of,
-            }),
-            notes: Vec::new(),
-            sampled,
-        };
-        let columns = shown.observations.columns.iter();
+        let ((trajectory, observations, skins), complete) = join(choose, complete);
+        let columns = observations.columns.iter();
         let taken = columns.filter(|column| output.takes(&column.name, &model.system));
-        shown.tabulated.columns = taken.cloned().collect();
-        for name in output.quantities.iter().flatten() {
+        let tabulated = taken.cloned().collect();
+        let is_lacking = |name: &&String| {
             let alone = Output {
                 every: None,
-                quantities: Some(vec![name.clone()]),
+                quantities: Some(vec![(*name).clone()]),
             };
-            let mut columns = shown.observations.columns[1..].iter();
-            if !columns.any(|column| alone.takes(&column.name, &model.system)) {
-                shown.notes.push(format!(
-                    "\"quantities\": this motion has no column of {name:?}"
-                ));
-            }
-        }
-        match (shown.part, complete) {
+            let mut columns = observations.columns[1..].iter();
+            !columns.any(|column| alone.takes(&column.name, &model.system))
+        };
+        let lacking = output.quantities.iter().flatten().filter(is_lacking);
+        let lacking =
+            lacking.map(|name| format!("\"quantities\": this motion has no column of {name:?}"));
+        summary.notes.note("shown", lacking);
+        summary.shown = sampled.as_ref().map(|sampled| ShownPart {
+            instants: sampled.instants.len(),
+            of: discrete.times.len(),
+        });
+        match (summary.shown, complete) {
             (Some(ShownPart { instants, of }), Some(bytes)) => {
-                shown.notes.push(format!(
+                let note = format!(
                     "tables, figures and page show {instants} of {of} instants, between which nothing is lost to the eye; {TABLES} and the solution have all, \"output\": {{\"every\": …}} chooses"
-                ));
+                );
+                summary.notes.note("shown", [note]);
                 let bytes = bytes.map_err(WriteError::at(files.folder().join(TABLES)))?;
                 files.add(TABLES, &bytes)?;
             }
             _ => files.remove(TABLES),
         }
-        Ok(shown)
+        Ok(Self {
+            tabulated: Observations { columns: tabulated },
+            trajectory,
+            observations,
+            skins,
+            sampled,
+        })
     }
 
     /// The run that is shown, without what it is compared with.

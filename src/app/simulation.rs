@@ -353,9 +353,7 @@ impl<'a> Ended<'a> {
             trajectory,
             observations,
         };
-        let shown = DisplayedMotion::from_motion(motion, &run.loaded.output, true, files)?;
-        summary.notes.note("shown", shown.notes.iter().cloned());
-        summary.shown = shown.part;
+        let shown = DisplayedMotion::from_motion(motion, &run.loaded.output, true, summary, files)?;
         let mut content = summary.page("Simulation", Some(run.loaded));
         content.rows = rows(summary, task, model, discrete, assessment.neglected);
         let earlier = earlier.map(|earlier| shown.beside(earlier));

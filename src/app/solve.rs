@@ -8,8 +8,8 @@ use crate::app::kept::{resume_file, solution_file, unfinished};
 use crate::app::progress::Reached;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted, counted};
 use crate::app::solve_summary::{
-    command_output, convergence, describe, gap, goal, outcome_word, parameter, parameter_note,
-    program, rows, seconds, sensitivity_entries, targets, tolerance_warning, waypoints,
+    asked_places, command_output, convergence, describe, gap, goal, outcome_word, parameter,
+    parameter_note, program, rows, seconds, sensitivity_entries, tolerance_warning,
 };
 use crate::app::summary::{
     MEASURED, STOPPED, Summary, leave_out, remove_earlier, time_to_write, versions,
@@ -167,9 +167,8 @@ impl Solved<'_> {
             trajectory,
             observations: &observed,
         };
-        let shown = DisplayedMotion::from_motion(motion, &self.loaded.output, false, files)?;
-        summary.notes.note("shown", shown.notes.iter().cloned());
-        summary.shown = shown.part;
+        let shown =
+            DisplayedMotion::from_motion(motion, &self.loaded.output, false, summary, files)?;
         self.write_pictures(motion, &shown, summary, files, &origin)
     }
 
@@ -211,8 +210,8 @@ impl Solved<'_> {
             figures: self.request.figures,
             tracked: &shown.tracked(&summary.tracking),
             goal: goal.as_deref(),
-            targets: &targets(control, motion.trajectory),
-            waypoints: &waypoints(control, motion.trajectory),
+            targets: &asked_places(control, motion.trajectory, true),
+            waypoints: &asked_places(control, motion.trajectory, false),
             page: self.request.page.of(&content),
             ..shown.run(&model.system, origin)
         };

@@ -251,47 +251,38 @@ pub(super) fn convergence(iterations: &[Iteration]) -> (String, LinePlot) {
     ("Convergence".to_owned(), plot)
 }
 
-/// Places in mm where markers were to end, by goal or objective, with their indices; as they ended in directions that are free.
-pub(super) fn targets(control: &Control, motion: &Trajectory) -> Vec<(usize, Vector3<f64>)> {
-    let last = motion.times.len() - 1;
-    let given = match &control.goal {
-        BoundaryState::Markers { places, .. } => places.clone(),
-        _ => BTreeMap::new(),
-    };
-    let given = given
-        .into_iter()
-        .map(|(marker, place)| ((last, marker), place));
-    let at_end = |during: During| (during == During::End).then_some(last);
-    asked_places(control, motion, given.collect(), &at_end)
-}
-
-/// Places in mm that markers are to pass, exactly or near, with their indices; as they pass in directions that are free.
-pub(super) fn waypoints(control: &Control, motion: &Trajectory) -> Vec<(usize, Vector3<f64>)> {
-    let instant = |part: f64| instant_at(part, motion.intervals());
-    let given = control.waypoints.iter().flat_map(|waypoint| {
-        let all = waypoint.places.iter();
-        all.map(|(&marker, place)| ((instant(waypoint.part), marker), *place))
-    });
-    let on_the_way = |during: During| match during {
-        During::At(part) => Some(instant(part)),
-        _ => None,
-    };
-    asked_places(control, motion, given.collect(), &on_the_way)
-}
-
-/// Places by instant and marker with those near which the objective asks for them; those that the motion has in directions that are free.
-fn asked_places(
+/// Places in mm where markers were to end, by goal or objective, or those that they are to pass before, exactly or near, with their indices; as
+/// the motion has them in directions that are free.
+pub(super) fn asked_places(
     control: &Control,
     motion: &Trajectory,
-    mut places: BTreeMap<(usize, usize), Place>,
-    instant: &dyn Fn(During) -> Option<usize>,
+    are_at_end: bool,
 ) -> Vec<(usize, Vector3<f64>)> {
+    let last = motion.intervals();
+    let instant = |part: f64| instant_at(part, last);
+    let given: Vec<_> = match &control.goal {
+        BoundaryState::Markers { places, .. } if are_at_end => vec![(last, places)],
+        _ if are_at_end => Vec::new(),
+        _ => {
+            let waypoints = control.waypoints.iter();
+            waypoints
+                .map(|one| (instant(one.part), &one.places))
+                .collect()
+        }
+    };
+    let given = given.into_iter().flat_map(|(k, places)| {
+        let each = places.iter();
+        each.map(move |(&marker, place)| ((k, marker), *place))
+    });
+    let mut places: BTreeMap<(usize, usize), Place> = given.collect();
     for cost in &control.objective.quantities {
-        let CostFunction::Square { reference } = &cost.function else {
-            continue;
+        let k = match cost.during {
+            During::End if are_at_end => last,
+            During::At(part) if !are_at_end => instant(part),
+            _ => continue,
         };
-        if let (&What::Place { marker, axis }, Some(k)) =
-            (&cost.quantity.what, instant(cost.during))
+        if let (&What::Place { marker, axis }, CostFunction::Square { reference }) =
+            (&cost.quantity.what, &cost.function)
         {
             let place = &mut places.entry((k, marker)).or_default().0[axis];
             place.get_or_insert_with(|| reference.at(motion.times[k]));
@@ -316,12 +307,8 @@ pub(super) fn goal(model: &Model, boundary: &BoundaryConditions) -> Option<Vec<P
             .copied()
             .collect::<Option<Vec<f64>>>()?,
     };
-    let mut instant = model.action.map.instant();
-    (z.len() == instant.z.len()).then(|| {
-        instant.z.copy_from_slice(&z);
-        model.action.map.place(&mut instant);
-        model.poses(&instant)
-    })
+    let instant = model.action.map.placed(&z);
+    (z.len() == instant.z.len()).then(|| model.poses(&instant))
 }
 
 /// A row of a table: what follows, and its deviations.

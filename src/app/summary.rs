@@ -6,7 +6,6 @@
 
 use crate::app::blocks::energy_rows;
 use crate::app::comparison::Comparison;
-use crate::app::displayed_motion::ShownPart;
 use crate::app::error::CommandError;
 use crate::app::fields::FOLDER;
 use crate::app::kept::record::make_folder_of;
@@ -93,6 +92,13 @@ pub(super) struct Summary {
     #[serde(flatten)]
     pub(super) plan: Plan,
     pub(super) versions: Entries,
+}
+
+/// Size of the displayed part of a motion.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub(super) struct ShownPart {
+    pub(super) instants: usize,
+    pub(super) of: usize,
 }
 
 /// Versions that the result depends on: those of this program.

@@ -145,12 +145,13 @@ fn log_ticks([low, high]: [f64; 2], count: f64) -> Ticks {
                 2 | 5 => decades < 1.5,
                 _ => false,
             };
-            if labelled && digit == 1 {
-                ticks
-                    .major
-                    .push((position, format!("10{}", superscript(power))));
-            } else if labelled {
-                let label = format!("{digit}·10{}", superscript(power));
+            if labelled {
+                let factor = if digit == 1 {
+                    ""
+                } else {
+                    &format!("{digit}·")
+                };
+                let label = format!("{factor}10{}", superscript(power));
                 ticks.major.push((position, label));
             } else if stride == 1 || digit == 1 {
                 ticks.minor.push(position);

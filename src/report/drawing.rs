@@ -52,9 +52,9 @@ pub(super) struct Drawing<'a> {
 }
 
 impl Drawing<'_> {
-    /// A plate of the ground.
-    pub(super) fn ground(&self, canvas: &Canvas<'_>, plate: &[Vector3<f64>]) {
-        let places = self.view.places(plate);
+    /// The plate of the ground.
+    pub(super) fn ground(&self, canvas: &Canvas<'_>) {
+        let places = self.view.places(&ground_plate(self.run.system));
         let thickness = 4.0;
         let lower: Vec<CanvasPoint> = places.iter().map(|p| [p[0], p[1] + thickness]).collect();
         canvas.fill(&lower, style::REFERENCE.mix(style::INK, 0.25), 1.0);

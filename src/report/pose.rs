@@ -6,7 +6,7 @@ use crate::dynamics::trajectory::Trajectory;
 use crate::report::Run;
 use crate::report::body::Tint;
 use crate::report::canvas::{self, Align};
-use crate::report::drawing::{Drawing, ground_plate, marker_colour, points, reference};
+use crate::report::drawing::{Drawing, marker_colour, points, reference};
 use crate::report::legend::{self, LegendSymbol, colour_bar};
 use crate::report::skins::Skins;
 use crate::report::style;
@@ -40,7 +40,6 @@ pub fn svg(run: &Run<'_>) -> String {
         skins: &Skins::default(),
         ..*run
     };
-    let ground = ground_plate(system);
     let paths = paths(run);
     let mut points = points(run);
     if last == 0 {
@@ -75,7 +74,7 @@ pub fn svg(run: &Run<'_>) -> String {
     // What is flat stands in the middle.
     drawing.view.origin[1] += 0.5 * (size[1] - 2.0 * MARGIN - height);
     canvas::svg(size, run.origin, |canvas| {
-        drawing.ground(canvas, &ground);
+        drawing.ground(canvas);
         match last {
             0 => {
                 let behind = Drawing {
@@ -200,7 +199,6 @@ pub(super) fn snapshots(run: &Run<'_>) -> Option<String> {
         return None;
     }
     let (view, [width, height]) = run.view().fitted(&points(run), [0.0, 0.0], PANEL);
-    let ground = ground_plate(system);
     let scale = run.voltage_scale();
     let step = [width.max(40.0) + GAP, height + LABEL + GAP];
     let rows = (instants.len() as f64 * step[0] / ROW_WIDTH).ceil() as usize;
@@ -227,7 +225,7 @@ pub(super) fn snapshots(run: &Run<'_>) -> Option<String> {
                 voltages: voltages(run, k),
                 scale,
             };
-            drawing.ground(canvas, &ground);
+            drawing.ground(canvas);
             drawing.instant(canvas, k, Tint::Coloured);
             let paths = (0..system.markers.len()).map(|m| {
                 let path = trajectory.path(m);
