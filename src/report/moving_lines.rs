@@ -57,18 +57,28 @@ pub(super) fn ties<'a>(run: &Run<'a>, instants: &[usize]) -> Vec<MovingLine<'a>>
     run.system.components.iter().map(tie).collect()
 }
 
-/// The arrows of loads at some instants, of each always as many points.
+/// The arrows of loads that ever act at some instants, of each always as many points.
 pub(super) fn arrows<'a>(run: &Run<'a>, instants: &[usize]) -> Vec<MovingLine<'a>> {
-    let arrows = LoadArrows::new(run);
-    let line = |(source, load): (usize, &'a Load)| MovingLine {
-        name: &load.name,
-        colour: style::muscle(source).0,
-        places: instants
-            .iter()
-            .map(|&k| arrows.arrow(source, load, k))
-            .collect(),
+    let (system, rows) = (run.system, &run.trajectory.voltages);
+    let length = LENGTH * size(system);
+    let loads = system.components.loads.iter().zip(system.first_load()..);
+    let line = |(load, source): (&'a Load, usize)| {
+        let largest = rows.iter().map(|row| row[source].abs());
+        let largest = Some(largest.fold(0.0, f64::max)).filter(|size| *size > 0.0)?;
+        let arrow = LoadArrow {
+            run,
+            load,
+            faces: faces(system, load),
+            length,
+        };
+        let at = |&k: &usize| arrow.at(k, rows[k.min(rows.len() - 1)][source] / largest);
+        Some(MovingLine {
+            name: &load.name,
+            colour: style::muscle(source).0,
+            places: instants.iter().map(at).collect::<Option<_>>()?,
+        })
     };
-    arrows.loads().map(line).collect()
+    loads.filter_map(line).collect()
 }
 
 /// A helix between two points, with straight ends.
@@ -103,64 +113,22 @@ const HEAD: [f64; 2] = [0.22, 0.4];
 /// Segments of the shaft.
 const SEGMENTS: usize = 24;
 
-/// The loads of a motion, ready to be drawn at any instant.
-struct LoadArrows<'a> {
-    run: Run<'a>,
-    /// For each load, the faces of the surface of its block at which its arrow is.
-    faces: Vec<Vec<usize>>,
-    /// Source of the first load.
-    first: usize,
-    /// Largest size of each load in the motion.
-    largest: Vec<f64>,
+/// A load, ready to be drawn at any instant.
+struct LoadArrow<'a> {
+    run: &'a Run<'a>,
+    load: &'a Load,
+    /// The faces of the surface of its block at which its arrow is.
+    faces: Vec<usize>,
     /// Length of the longest arrow in mm.
     length: f64,
 }
 
-impl<'a> LoadArrows<'a> {
-    /// Of a motion; of one without inputs none.
-    fn new(run: &Run<'a>) -> Self {
-        let (system, rows) = (run.system, &run.trajectory.voltages);
-        let first = system.first_load();
-        let loads = &system.components.loads;
-        let largest = |load: usize| {
-            let sizes = rows.iter().map(|row| row[first + load].abs());
-            sizes.fold(0.0, f64::max)
-        };
-        let count = if rows.is_empty() { 0 } else { loads.len() };
-        Self {
-            run: *run,
-            faces: loads.iter().map(|load| faces(system, load)).collect(),
-            first,
-            largest: (0..count).map(largest).collect(),
-            length: LENGTH * size(system),
-        }
-    }
-
-    /// Each load that ever acts and has an arrow, with its source.
-    fn loads(&self) -> impl Iterator<Item = (usize, &'a Load)> + '_ {
-        let first = self.first;
-        let loads = self.largest.iter().zip(&self.run.system.components.loads);
-        let has_arrow = |load: &Load| match &load.on {
-            LoadPlace::Block { block, load } => {
-                !matches!(load, BlockLoad::Charge(_)) && *block < self.run.skins.list.len()
-            }
-            LoadPlace::Point { .. } | LoadPlace::Joint(_) => true,
-            LoadPlace::Muscle(_) => false,
-        };
-        let loads = loads
-            .enumerate()
-            .filter(move |(_, (largest, load))| **largest > 0.0 && has_arrow(load));
-        loads.map(move |(index, (_, load))| (first + index, load))
-    }
-
-    /// Its arrow at an instant, in mm: always the same number of points.
-    fn arrow(&self, source: usize, load: &Load, k: usize) -> Vec<Vector3<f64>> {
+impl LoadArrow<'_> {
+    /// Its arrow at an instant, in mm, for a part of its largest size in the motion; none of a load that has no arrow.
+    fn at(&self, k: usize, part: f64) -> Option<Vec<Vector3<f64>>> {
         let Run {
             system, trajectory, ..
-        } = self.run;
-        let rows = &trajectory.voltages;
-        let size = rows[k.min(rows.len() - 1)][source];
-        let part = size / self.largest[source - self.first];
+        } = *self.run;
         let place = |point: Attachment| trajectory.point(k, &point, system);
         let along = |point: Attachment, axis: &Vector3<f64>| {
             let tip = Attachment {
@@ -169,7 +137,7 @@ impl<'a> LoadArrows<'a> {
             };
             place(tip) - place(point)
         };
-        let (at, axis, is_turn) = match &load.on {
+        let (at, axis, is_turn) = match &self.load.on {
             LoadPlace::Point {
                 at,
                 direction,
@@ -179,7 +147,7 @@ impl<'a> LoadArrows<'a> {
                 false => (place(*at), *direction, false),
             },
             LoadPlace::Block { block, load } => {
-                let (middle, inward) = self.middle(*block, &self.faces[source - self.first], k);
+                let (middle, inward) = self.middle(*block, k)?;
                 match load {
                     BlockLoad::Pressure { .. } => {
                         (middle - inward * (self.length * part), inward, false)
@@ -187,10 +155,10 @@ impl<'a> LoadArrows<'a> {
                     BlockLoad::Traction(_, axis) | BlockLoad::BodyForce(axis) => {
                         (middle, *axis, false)
                     }
-                    BlockLoad::Charge(_) => return Vec::new(),
+                    BlockLoad::Charge(_) => return None,
                 }
             }
-            LoadPlace::Muscle(_) => return Vec::new(),
+            LoadPlace::Muscle(_) => return None,
             LoadPlace::Joint(joint) => {
                 let joint = &system.joints[*joint];
                 let on = |at| Attachment {
@@ -214,22 +182,24 @@ impl<'a> LoadArrows<'a> {
             }
         };
         let side = if is_turn { axis } else { across };
-        with_head(shaft, &side, self.length * part.abs())
+        Some(with_head(shaft, &side, self.length * part.abs()))
     }
 
-    /// The middle of some faces of a block at an instant, and the unit vector against their mean normal.
-    fn middle(&self, block: usize, faces: &[usize], k: usize) -> (Vector3<f64>, Vector3<f64>) {
-        let skin = &self.run.skins.list[block];
+    /// The middle of its faces of a block at an instant, and the unit vector against their mean normal; none where the block is not drawn.
+    fn middle(&self, block: usize, k: usize) -> Option<(Vector3<f64>, Vector3<f64>)> {
+        let skin = self.run.skins.list.get(block)?;
         let places = &skin.places[self.run.skins.position(k)];
-        let corners = faces
+        let corners = self
+            .faces
             .iter()
             .map(|&face| skin.quads[face].map(|corner| places[corner]));
         let (mut middle, mut inward) = (Vector3::zeros(), Vector3::zeros());
         for corners in corners {
-            middle += corners.iter().sum::<Vector3<f64>>() / (4 * faces.len()) as f64;
+            middle += corners.iter().sum::<Vector3<f64>>() / (4 * self.faces.len()) as f64;
             inward -= normal(&corners);
         }
-        (middle, inward.try_normalize(0.0).unwrap_or_else(Vector3::x))
+        let inward = inward.try_normalize(0.0).unwrap_or_else(Vector3::x);
+        Some((middle, inward))
     }
 }
 

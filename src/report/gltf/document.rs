@@ -7,7 +7,7 @@ use crate::report::origin::Origin;
 use crate::report::style::Colour;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
-use nalgebra::{Matrix3, UnitQuaternion, Vector3};
+use nalgebra::{UnitQuaternion, Vector3};
 use serde_json::{Value, json};
 
 /// Numbers of the standard for kinds of numbers, buffers and primitives.
@@ -306,12 +306,8 @@ pub(super) const METRE: f64 = 1e-3;
 
 /// A body in its own frame, in m.
 pub(super) fn body(shape: &Shape) -> Surface {
-    let own = Pose {
-        centre: Vector3::zeros(),
-        directors: Matrix3::identity(),
-    };
     let mut mesh = Surface::default();
-    shape.add_to(&mut mesh, &own);
+    shape.add_to(&mut mesh, &Pose::GROUND);
     for vertex in &mut mesh.vertices {
         *vertex *= METRE;
     }
