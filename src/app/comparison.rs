@@ -6,6 +6,7 @@ use crate::kinematics::Pose;
 use crate::model::Model;
 use crate::model::system::Marker;
 use crate::workflow::accuracy::{Accuracy, GridLevel, greatest};
+use crate::workflow::motion::joint_coordinates;
 use nalgebra::Vector3;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -35,34 +36,24 @@ struct Apart {
 /// are on blocks, whose nodes the other scene may not have.
 pub(super) fn earlier(model: &Model, path: &Path) -> Option<Trajectory> {
     let solved = solution::read(path, model).ok()?;
-    let markers = &model.system.markers;
-    let on_bodies = markers.iter().all(|marker| marker.solid.is_none());
+    let mut markers = model.system.markers.iter();
+    let on_bodies = markers.all(|marker| marker.solid.is_none());
     if !on_bodies || solved.poses.len() != solved.times.len() {
         return None;
     }
-    let joints = |row: &Vec<f64>| {
-        let named = row.iter().zip(&model.system.joints);
-        named
-            .filter(|(_, joint)| joint.has_coordinate())
-            .map(|(&value, _)| value)
-            .collect()
+    let system = &model.system;
+    let marks = |poses: &Vec<Pose>| {
+        let place = |m: &Marker| m.point.place(poses, |body| system.bodies[body].pose());
+        system.markers.iter().map(place).collect()
     };
-    let marks = |poses: &Vec<Pose>| markers.iter().map(|m| place(model, m, poses)).collect();
     Some(Trajectory {
-        joints: solved.joints.iter().map(joints).collect(),
+        joints: joint_coordinates(model, &solved),
         marks: solved.poses.iter().map(marks).collect(),
         times: solved.times,
         poses: solved.poses,
         voltages: solved.voltages,
         ..Trajectory::default()
     })
-}
-
-fn place(model: &Model, marker: &Marker, poses: &[Pose]) -> Vector3<f64> {
-    match marker.point.body {
-        Some(body) => poses[body].point(&model.system.bodies[body].pose().local(&marker.point.at)),
-        None => marker.point.at,
-    }
 }
 
 impl Comparison {

@@ -16,7 +16,7 @@ use crate::app::summary::{
 };
 use crate::app::{feedback_files, fields};
 use crate::control::PEAK_VOLTAGE;
-use crate::control::problem::{Control, ControlTask, Regulator};
+use crate::control::problem::{Control, ControlTask};
 use crate::dynamics::observations;
 use crate::dynamics::trajectory::Trajectory;
 use crate::files::{Entries, Loaded};
@@ -69,7 +69,6 @@ pub(super) fn control(
             loaded,
             system: motion.system,
             control: motion.control,
-            feedback: loaded.feedback.as_ref(),
             result: one,
         };
         each.push(solved.write(read, began)?);
@@ -102,13 +101,12 @@ pub(super) fn control(
     Ok(output)
 }
 
-/// A motion of a problem, solved or not, with the feedback along it.
+/// A motion of a problem, solved or not.
 struct Solved<'a> {
     request: &'a CommandInput,
     loaded: &'a Loaded,
     system: &'a System,
     control: &'a Control,
-    feedback: Option<&'a Regulator>,
     result: &'a SolveResult,
 }
 
@@ -156,7 +154,7 @@ impl Solved<'_> {
         let model = &optimum.model;
         let mut observed = observations(model, discrete);
         let origin = self.request.origin(true);
-        let (control, feedback) = (self.control, self.feedback);
+        let (control, feedback) = (self.control, self.loaded.feedback.as_ref());
         feedback_files::add(control, feedback, result, summary, files, &origin)?;
         let written = fields::write(files, model, discrete, &origin)?;
         summary.blocks = blocks::entries(model, &observed, written);

@@ -15,8 +15,10 @@ use crate::dynamics::EquilibriumError;
 use crate::files::{Entries, Loaded, lay_out};
 use crate::ipopt;
 use crate::model::Model;
+use crate::model::system::InputKind;
 use crate::nlp::Status;
 use crate::report::atomic::WriteError;
+use crate::report::curves::input_names;
 use crate::report::file_set::FileSet;
 use crate::report::paraview::remove_from;
 use crate::report::{PageContent, quoting};
@@ -214,17 +216,14 @@ fn asked(loaded: &Loaded) -> Vec<(String, String)> {
     documents
 }
 
-/// Files that an earlier result of the folder may have.
-const EARLIER: [&str; 29] = [
-    "body_forces.svg",
+/// Files that an earlier result of the folder may have, beside the figures of its inputs.
+const EARLIER: [&str; 22] = [
     "charge.svg",
-    "charges.svg",
     "configuration.svg",
     "continuation.npz",
     "controls.csv",
     "energy.svg",
     "equilibrium.csv",
-    "forces.svg",
     "joint_angles.svg",
     "motion.gltf",
     "parts.pvd",
@@ -235,21 +234,19 @@ const EARLIER: [&str; 29] = [
     "snapshots.svg",
     "solution.json",
     "solution.npz",
-    "surface_charges.svg",
     "tables.npz",
     "tip_path.svg",
-    "torques.svg",
     "tracking.csv",
     "tracking.svg",
-    "tractions.svg",
     "trajectory.csv",
     "trajectory.pvd",
-    "voltages.svg",
 ];
 
 /// Removes the files and fields of an earlier result.
 pub(super) fn remove_earlier(files: &mut FileSet) {
-    EARLIER.iter().for_each(|name| files.remove(name));
+    let inputs = InputKind::ALL.map(|kind| input_names(kind).0);
+    let earlier = EARLIER.into_iter().chain(inputs);
+    earlier.for_each(|name| files.remove(name));
     remove_from(0, FOLDER, files);
 }
 

@@ -42,7 +42,7 @@ pub(super) fn input_label(kind: InputKind) -> String {
 }
 
 /// Name of the figure of a kind, and title of its chart.
-pub(super) fn input_names(kind: InputKind) -> (&'static str, &'static str) {
+pub fn input_names(kind: InputKind) -> (&'static str, &'static str) {
     match kind {
         InputKind::Voltage => ("voltages.svg", "Voltages"),
         InputKind::Force => ("forces.svg", "Forces"),

@@ -72,7 +72,7 @@ pub fn controls<'a>(trajectory: &'a Trajectory, system: &System) -> Vec<TableCol
     let inputs = system.sources().into_iter().enumerate();
     let inputs = inputs.map(|(i, source)| {
         let heading = format!("{} [{}]", source.name, source.kind.unit());
-        let values: Vec<f64> = rows.iter().map(|row| row[i]).collect();
+        let values: Vec<f64> = rows.iter().take(last).map(|row| row[i]).collect();
         TableColumn::new(heading, values)
     });
     ends.into_iter().chain(inputs).collect()

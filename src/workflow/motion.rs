@@ -78,20 +78,25 @@ pub(crate) fn parameters(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Fo
 
 /// The motion as tables and figures show it.
 pub fn trajectory(model: &Model, solved: &Solution) -> Trajectory {
-    let shown = |row: &Vec<f64>| {
-        let joints = row.iter().zip(&model.system.joints);
-        let joints = joints.filter(|(_, joint)| joint.has_coordinate());
-        joints.map(|(&value, _)| value).collect()
-    };
     Trajectory {
         times: solved.times.clone(),
-        joints: solved.joints.iter().map(shown).collect(),
+        joints: joint_coordinates(model, solved),
         poses: solved.poses.clone(),
         marks: marks(model, &solved.z),
         voltages: solved.voltages.clone(),
         ends: Vec::new(),
         charges: model.circuit_charges(&solved.z),
     }
+}
+
+/// Coordinates of the joints that have one, per instant.
+pub(crate) fn joint_coordinates(model: &Model, solved: &Solution) -> Vec<Vec<f64>> {
+    let shown = |row: &Vec<f64>| {
+        let joints = row.iter().zip(&model.system.joints);
+        let joints = joints.filter(|(_, joint)| joint.has_coordinate());
+        joints.map(|(&value, _)| value).collect()
+    };
+    solved.joints.iter().map(shown).collect()
 }
 
 /// Places of the markers at instants with coordinates z.
