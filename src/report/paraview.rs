@@ -49,29 +49,6 @@ pub struct UnstructuredGrid<'a> {
     pub cell_data: Vec<Field<'a>>,
 }
 
-/// Data of the points or of the cells of a grid.
-#[derive(Clone, Copy)]
-enum At {
-    Points,
-    Cells,
-}
-
-impl<'a> UnstructuredGrid<'a> {
-    fn fields(&self, at: At) -> &[Field<'a>] {
-        match at {
-            At::Points => &self.point_data,
-            At::Cells => &self.cell_data,
-        }
-    }
-
-    fn count(&self, at: At) -> usize {
-        match at {
-            At::Points => self.points.len(),
-            At::Cells => self.hexahedra.len(),
-        }
-    }
-}
-
 /// The `.vtu` file of solids at one instant: points and cells of the first, then those of the next, each with the points of
 /// its own.
 ///
@@ -189,30 +166,9 @@ pub(crate) fn remove_from(first: usize, folder: &str, files: &mut FileSet) {
     }
 }
 
-/// Names and components of the fields of all grids, in the order of their first appearance.
-fn layout<'a>(grids: &[UnstructuredGrid<'a>], at: At) -> Vec<(&'a str, usize)> {
-    let mut names: Vec<(&str, usize)> = Vec::new();
-    for grid in grids {
-        for field in grid.fields(at) {
-            let Field {
-                name, components, ..
-            } = *field;
-            let (found, expected) = (field.values.len(), components * grid.count(at));
-            assert_eq!(found, expected, "number of values of the field {name:?}");
-            match names.iter().find(|(known, _)| *known == name) {
-                Some(&(_, known)) => {
-                    assert_eq!(known, components, "components of the field {name:?}");
-                }
-                None => names.push((name, components)),
-            }
-        }
-    }
-    names
-}
-
 fn piece(text: &mut String, grids: &[UnstructuredGrid<'_>]) {
-    let count = |at| grids.iter().map(|grid| grid.count(at)).sum::<usize>();
-    let (points, cells) = (count(At::Points), count(At::Cells));
+    let points: usize = grids.iter().map(|grid| grid.points.len()).sum();
+    let cells: usize = grids.iter().map(|grid| grid.hexahedra.len()).sum();
     line(
         text,
         format_args!(r#"<Piece NumberOfPoints="{points}" NumberOfCells="{cells}">"#),
@@ -229,21 +185,50 @@ fn piece(text: &mut String, grids: &[UnstructuredGrid<'_>]) {
     array(text, "UInt8", "types", 1, &vec![HEXAHEDRON; cells]);
     text.push_str("</Cells>\n");
 
-    for (tag, at) in [("PointData", At::Points), ("CellData", At::Cells)] {
-        line(text, format_args!("<{tag}>"));
-        for (name, components) in layout(grids, at) {
-            let mut bytes = Vec::new();
-            for grid in grids {
-                let known = grid.fields(at).iter().find(|field| field.name == name);
-                let lacking = vec![f64::NAN; components * grid.count(at)];
-                let values = known.map_or(&lacking[..], |field| &field.values);
-                bytes.extend(bytes_of(values.iter().copied()));
-            }
-            array(text, "Float64", name, components, &bytes);
-        }
-        line(text, format_args!("</{tag}>"));
-    }
+    data(text, "PointData", grids, |grid| {
+        (&grid.point_data, grid.points.len())
+    });
+    data(text, "CellData", grids, |grid| {
+        (&grid.cell_data, grid.hexahedra.len())
+    });
     text.push_str("</Piece>\n");
+}
+
+/// Quantities at all points or in all cells, in the order of their first appearance; `of` are those of a grid with the number of its places.
+fn data<'g, 'a>(
+    text: &mut String,
+    tag: &str,
+    grids: &'g [UnstructuredGrid<'a>],
+    of: fn(&'g UnstructuredGrid<'a>) -> (&'g [Field<'a>], usize),
+) {
+    let mut names: Vec<(&str, usize)> = Vec::new();
+    for (fields, count) in grids.iter().map(of) {
+        for field in fields {
+            let Field {
+                name, components, ..
+            } = *field;
+            let (found, expected) = (field.values.len(), components * count);
+            assert_eq!(found, expected, "number of values of the field {name:?}");
+            match names.iter().find(|(known, _)| *known == name) {
+                Some(&(_, known)) => {
+                    assert_eq!(known, components, "components of the field {name:?}");
+                }
+                None => names.push((name, components)),
+            }
+        }
+    }
+    line(text, format_args!("<{tag}>"));
+    for (name, components) in names {
+        let mut bytes = Vec::new();
+        for (fields, count) in grids.iter().map(of) {
+            let known = fields.iter().find(|field| field.name == name);
+            let lacking = vec![f64::NAN; components * count];
+            let values = known.map_or(&lacking[..], |field| &field.values);
+            bytes.extend(bytes_of(values.iter().copied()));
+        }
+        array(text, "Float64", name, components, &bytes);
+    }
+    line(text, format_args!("</{tag}>"));
 }
 
 /// Points of the cells, counted over all solids.
