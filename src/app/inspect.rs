@@ -189,13 +189,11 @@ fn meshed_bodies(system: &System) -> String {
 fn left_out(loops: &Loops) -> String {
     let mut text = String::new();
     if !loops.is_empty() {
-        text.push_str(
-            "left out of loops, as they follow from the other constraints along the motion\n",
+        let names = loops.left_out().map(|name| format!("  {name}\n"));
+        let names: String = names.collect();
+        text = format!(
+            "left out of loops, as they follow from the other constraints along the motion\n{names}\n"
         );
-        loops
-            .left_out()
-            .for_each(|name| text.push_str(&format!("  {name}\n")));
-        text.push('\n');
     }
     if let Some(warning) = &loops.warning {
         text.push_str(&format!("warning: {warning}\n\n"));

@@ -210,13 +210,11 @@ impl Drawing<'_> {
             let rim = Stroke::solid(ink, 1.1);
             let places = self.view.places(path);
             canvas.line(&places, rim);
-            match places[..] {
-                [first, .., last] => {
-                    canvas.disc(first, 2.8, style::PAPER, rim);
-                    canvas.disc(last, 2.4, ink, rim);
-                }
-                [only] => canvas.disc(only, 2.4, ink, rim),
-                _ => {}
+            if let [first, _, ..] = places[..] {
+                canvas.disc(first, 2.8, style::PAPER, rim);
+            }
+            if let [.., last] = places[..] {
+                canvas.disc(last, 2.4, ink, rim);
             }
         }
     }

@@ -283,16 +283,11 @@ impl PlotFrame<'_, '_> {
 
     /// A curve, and its labels where none of another curve stands yet; `labelled` are the places and widths of those.
     fn series(&self, series: &Series, x: &Axis, y: &Axis, labelled: &mut Vec<(CanvasPoint, f64)>) {
-        let places: Vec<_> = series
-            .points
-            .iter()
-            .map(|p| {
-                [
-                    self.horizontal(x.position(p[0])),
-                    self.vertical(y.position(p[1])),
-                ]
-            })
-            .collect();
+        let place = |p: &[f64; 2]| {
+            let [x, y] = [x.position(p[0]), y.position(p[1])];
+            [self.horizontal(x), self.vertical(y)]
+        };
+        let places: Vec<_> = series.points.iter().map(place).collect();
         trace(self.canvas, &places, series);
         let colour = series.colour.mix(style::INK, 0.3);
         for (k, (place, label)) in places.iter().zip(&series.labels).enumerate() {

@@ -134,16 +134,13 @@ fn instants(trajectory: &Trajectory, skins: &Skins) -> Vec<usize> {
         _ => skins.instants.clone(),
     };
     let is_finite = |k: &usize| {
-        let poses = &trajectory.poses[*k];
-        let mut centres = poses.iter().map(|pose| pose.centre);
-        let mut directors = poses.iter().flat_map(|pose| pose.directors.iter());
+        let poses = trajectory.poses[*k].iter();
+        let poses = poses.flat_map(|pose| pose.centre.iter().chain(pose.directors.iter()));
         let position = skins.position(*k);
-        let mut places = skins.list.iter().flat_map(|skin| &skin.places[position]);
-        let finite = |p: &Vector3<f64>| p.iter().all(|x| x.is_finite());
-        centres.all(|p| finite(&p))
-            && directors.all(|x| x.is_finite())
-            && trajectory.marks[*k].iter().all(finite)
-            && places.all(finite)
+        let places = skins.list.iter().flat_map(|skin| &skin.places[position]);
+        let places = places.chain(&trajectory.marks[*k]);
+        let mut numbers = poses.chain(places.flat_map(|place| place.iter()));
+        numbers.all(|x| x.is_finite())
     };
     all.into_iter().filter(is_finite).collect()
 }

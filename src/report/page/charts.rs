@@ -44,28 +44,22 @@ pub(super) fn of_plot(titled: &(String, LinePlot)) -> Value {
 
 /// Inputs of a kind: the sources between the same two bodies share a panel; many panels become rows of colours.
 fn of_inputs(run: &Run<'_>, kind: InputKind) -> Option<Value> {
-    let curves = curves::inputs(run, kind);
-    let (mut names, mut groups): (Vec<String>, Vec<Vec<&Series>>) = (Vec::new(), Vec::new());
-    for (i, curve) in &curves {
-        let name = pair(run.system, *i);
-        match names.iter().position(|other| *other == name) {
-            Some(group) => groups[group].push(curve),
-            None => {
-                names.push(name);
-                groups.push(vec![curve]);
-            }
+    let mut groups: Vec<(String, Vec<Series>)> = Vec::new();
+    for (i, curve) in curves::inputs(run, kind) {
+        let name = pair(run.system, i);
+        match groups.iter_mut().find(|(other, _)| *other == name) {
+            Some((_, group)) => group.push(curve),
+            None => groups.push((name, vec![curve])),
         }
     }
-    let shown = if groups.len() > PANELS {
-        "rows"
-    } else {
-        "panels"
+    let shown = match groups.len() > PANELS {
+        true => "rows",
+        false => "panels",
     };
     let alone = groups.len() == 1;
-    let panels = names.iter().zip(&groups).map(|(name, group)| {
-        let curves = group.iter().map(|&one| one.clone()).collect();
-        let plot = LinePlot::over_time(curves::input_label(kind), curves);
-        panel(if alone { "" } else { name }, &plot)
+    let panels = groups.into_iter().map(|(name, group)| {
+        let plot = LinePlot::over_time(curves::input_label(kind), group);
+        panel(if alone { "" } else { &name }, &plot)
     });
     let panels: Vec<Value> = panels.collect();
     let (_, title) = curves::input_names(kind);

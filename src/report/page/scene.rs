@@ -13,6 +13,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use nalgebra::Vector3;
 use serde_json::{Value, json};
+use std::borrow::Borrow;
 
 /// Length in mm of the axis that shows the direction of a joint.
 const AXIS: f64 = 1.0;
@@ -49,7 +50,7 @@ pub(super) fn scene(run: &Run<'_>) -> Value {
         "ties": stage.lines(),
         "joints": stage.joints(),
         "markers": stage.markers(),
-        "goal": run.goal.map(|poses| numbers(poses.iter().flat_map(moved))),
+        "goal": run.goal.map(|poses| places(poses.iter().flat_map(moved))),
         "ground": {
             "plate": places(&ground_plate(run.system)),
             "faces": places(held_faces(run.system).iter().flatten()),
@@ -59,12 +60,9 @@ pub(super) fn scene(run: &Run<'_>) -> Value {
 }
 
 /// Columns of the motion of a body: directors and centre.
-fn moved(pose: &Pose) -> impl Iterator<Item = f64> {
-    let columns: [Vector3<f64>; 3] = [0, 1, 2].map(|i| pose.directors.column(i).into_owned());
-    columns
-        .into_iter()
-        .chain([pose.centre])
-        .flat_map(|column| [column.x, column.y, column.z])
+fn moved(pose: &Pose) -> [Vector3<f64>; 4] {
+    let [a, b, c] = [0, 1, 2].map(|i| pose.directors.column(i).into_owned());
+    [a, b, c, pose.centre]
 }
 
 struct Stage<'a> {
@@ -86,7 +84,7 @@ impl Stage<'_> {
                 "name": body.name,
                 "vertices": places(&mesh.vertices),
                 "triangles": indices(mesh.triangles.iter().flatten().copied()),
-                "motion": numbers(motion),
+                "motion": places(motion),
             })
         });
         part.collect()
@@ -100,8 +98,7 @@ impl Stage<'_> {
             let prisms = self.instants.iter();
             let motion = prisms.flat_map(|&k| {
                 let prism = Prism::muscle(system, trajectory, k, i);
-                let columns = prism.halves.into_iter().chain([prism.centre]);
-                columns.flat_map(|column| [column.x, column.y, column.z])
+                prism.halves.into_iter().chain([prism.centre])
             });
             let rest = (muscle.to.at - muscle.from.at).norm();
             let stretch = |&k: &usize| {
@@ -119,7 +116,7 @@ impl Stage<'_> {
             json!({
                 "kind": "muscle",
                 "name": muscle.name,
-                "motion": numbers(motion),
+                "motion": places(motion),
                 "quantities": quantities,
             })
         };
@@ -200,8 +197,7 @@ impl Stage<'_> {
                     at: joint.at + shift,
                 };
                 let instants = self.instants.iter();
-                let found = instants.map(move |&k| trajectory.point(k, &point, system));
-                places(&found.collect::<Vec<_>>())
+                places(instants.map(|&k| trajectory.point(k, &point, system)))
             };
             json!({
                 "name": joint.name,
@@ -235,7 +231,7 @@ impl Stage<'_> {
                     }
                     place
                 };
-                places(&kept.clone().map(place).collect::<Vec<_>>())
+                places(kept.clone().map(place))
             });
             let marked = self.run.targets.iter().chain(self.run.waypoints);
             let targets: Vec<_> = marked.filter(|(index, _)| *index == m).collect();
@@ -277,7 +273,7 @@ fn packed(bytes: impl Iterator<Item = u8>) -> Value {
 }
 
 /// Coordinates of places in mm, one after the other.
-fn places<'a>(places: impl IntoIterator<Item = &'a Vector3<f64>>) -> Value {
+fn places(places: impl IntoIterator<Item = impl Borrow<Vector3<f64>>>) -> Value {
     let places = places.into_iter();
-    numbers(places.flat_map(|place| [place.x, place.y, place.z]))
+    numbers(places.flat_map(|place| <[f64; 3]>::from(*place.borrow())))
 }
