@@ -125,11 +125,7 @@ pub(super) fn at(
     summary.notes.clone_from(&result.remarks);
     summary.plan = Plan::from_model(model, None, MEASURED);
     summary.blocks = blocks::entries(model, &observed, written);
-    summary.seconds = Seconds {
-        total: began.elapsed().as_secs_f64(),
-        setup: read + result.setup,
-        ..Seconds::default()
-    };
+    summary.seconds = Seconds::since(began, read + result.setup);
     let output = command_output(&summary, &rest, &folder);
     summary.task = rest.entries();
     let title = match loss {
@@ -210,11 +206,7 @@ fn follow(
     summary.domain = warnings::outside_domain(&out_of_domain(&model, &path.discrete));
     let note = warnings::domain_note(&summary.domain, false);
     summary.notes.warn("outside_domain", note);
-    summary.seconds = Seconds {
-        total: began.elapsed().as_secs_f64(),
-        setup,
-        ..Seconds::default()
-    };
+    summary.seconds = Seconds::since(began, setup);
     let mut page = summary.page("Path of equilibria", loaded);
     page.rows = rows(&found, path.stops[path.shown()].fraction);
     page.plots.push(("Path".to_owned(), plot));

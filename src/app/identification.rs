@@ -4,7 +4,7 @@ use crate::app::error::CommandError;
 use crate::app::identification_summary::{Identification, remarks, status};
 use crate::app::kept::record::make_folder_of;
 use crate::app::request::{CommandInput, CommandOutput, PageWanted};
-use crate::app::summary::{Summary, remove_earlier};
+use crate::app::summary::{Seconds, Summary, remove_earlier};
 use crate::control::problem;
 use crate::dynamics::trajectory::Trajectory;
 use crate::files::Loaded;
@@ -66,7 +66,7 @@ pub(super) fn run(
         "residuals.csv",
         cells_csv(&table(task, &found), &origin).as_bytes(),
     )?;
-    (summary.seconds.setup, summary.seconds.total) = (read, began.elapsed().as_secs_f64());
+    summary.seconds = Seconds::since(began, read);
     if request.page == PageWanted::Written {
         let page = page(identification, request, loaded, &summary);
         files.add("report.html", page.as_bytes())?;

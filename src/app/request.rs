@@ -3,6 +3,7 @@
 use crate::app::progress::ProgressDisplay;
 use crate::control::problem::Task;
 use crate::files::is_standard_input;
+use crate::report::atomic::folder;
 use crate::report::origin::Origin;
 use crate::report::{Figures, PageContent};
 use crate::workflow::accuracy::AccuracyTarget;
@@ -103,11 +104,7 @@ const GENERIC: [&str; 2] = ["problem", "scene"];
 /// The name of a problem: that of its file, or of its folder.
 fn name(input: &Path) -> OsString {
     let stem = input.file_stem().unwrap_or_default();
-    let folder = match input.parent() {
-        Some(folder) if !folder.as_os_str().is_empty() => folder,
-        _ => Path::new("."),
-    };
-    let of_folder = || Some(folder.canonicalize().ok()?.file_name()?.to_owned());
+    let of_folder = || Some(folder(input).canonicalize().ok()?.file_name()?.to_owned());
     let is_generic = GENERIC.iter().any(|&name| stem == name);
     let name = is_generic.then(of_folder).flatten();
     name.unwrap_or_else(|| stem.to_owned())

@@ -259,10 +259,8 @@ impl<'a> Ended<'a> {
         summary.task = self.entries(None);
         summary.accuracy.clone_from(&result.accuracy);
         summary.seconds = Seconds {
-            total: run.began.elapsed().as_secs_f64(),
-            setup: read + simulated.setup,
             solver: simulated.seconds,
-            ..Seconds::default()
+            ..Seconds::since(run.began, read + simulated.setup)
         };
         summary
     }

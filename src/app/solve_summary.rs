@@ -96,15 +96,13 @@ pub(super) fn parameter_note(found: &FoundParameter) -> String {
 pub(super) fn seconds(optimum: &Optimum, read: f64, began: Instant) -> Seconds {
     let seconds = &optimum.solution.seconds;
     Seconds {
-        total: began.elapsed().as_secs_f64(),
-        setup: read + optimum.setup,
         solver: seconds.solver,
         objective: seconds.objective,
         gradient: seconds.gradient,
         constraints: seconds.constraints,
         jacobian: seconds.jacobian,
         hessian: seconds.hessian,
-        ..Seconds::default()
+        ..Seconds::since(began, read + optimum.setup)
     }
 }
 

@@ -200,6 +200,15 @@ pub(super) struct Seconds {
 }
 
 impl Seconds {
+    /// Those so far of a run that began at a time, and those of its setup.
+    pub(super) fn since(began: Instant, setup: f64) -> Self {
+        Self {
+            total: began.elapsed().as_secs_f64(),
+            setup,
+            ..Self::default()
+        }
+    }
+
     /// The files are written, since `writing`; the run began at `began`.
     pub(super) fn wrote(&mut self, began: Instant, writing: Instant) {
         self.total = began.elapsed().as_secs_f64();

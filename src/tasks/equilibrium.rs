@@ -75,7 +75,12 @@ pub fn equilibrium(
     let model = model_at_rest(system, task)?;
     let setup = began.elapsed().as_secs_f64();
     phase("equilibrium");
-    let (found, loss) = find(&model, &task.voltages)?;
+    let start = model.reference_coordinates();
+    let (found, loss) = match stable_equilibrium(&model, &start, &model.scalars(&task.voltages)) {
+        Ok(found) => (found, None),
+        Err(dynamics::EquilibriumError::LimitPoint { loss, last }) => (*last, Some(loss)),
+        Err(error) => return Err(error.into()),
+    };
     let discrete = DiscreteTrajectory {
         times: vec![0.0],
         z: vec![found.z.clone()],
@@ -108,17 +113,4 @@ pub fn equilibrium(
         remarks,
         setup,
     })
-}
-
-/// The equilibrium under voltages; where growing loads lose it, the last one with the way in which it is lost.
-fn find(
-    model: &Model,
-    voltages: &[f64],
-) -> Result<(Equilibrium, Option<StabilityLoss>), dynamics::EquilibriumError> {
-    let start = model.reference_coordinates();
-    match stable_equilibrium(model, &start, &model.scalars(voltages)) {
-        Ok(found) => Ok((found, None)),
-        Err(dynamics::EquilibriumError::LimitPoint { loss, last }) => Ok((*last, Some(loss))),
-        Err(error) => Err(error),
-    }
 }
