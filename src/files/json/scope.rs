@@ -29,48 +29,8 @@ impl<'a> Scope<'a> {
         Self { document, place }
     }
 
-    /// The entry under a key.
-    pub(crate) fn key(&self, key: &str) -> Self {
-        let place = self.place.key(key);
+    fn inside(&self, place: JsonPath) -> Self {
         Self { place, ..*self }
-    }
-
-    /// The entry at an index.
-    pub(crate) fn index(&self, index: usize) -> Self {
-        let place = self.place.index(index);
-        Self { place, ..*self }
-    }
-
-    /// Makes a value of each entry of a list here.
-    pub(crate) fn each<S, T, C: FromIterator<T>>(
-        &self,
-        list: &[S],
-        make: impl Fn(&S, &Self) -> Result<T>,
-    ) -> Result<C> {
-        let make = |(index, one)| make(one, &self.index(index));
-        list.iter().enumerate().map(make).collect()
-    }
-
-    /// Makes a value of each entry of an object here by its name.
-    pub(crate) fn each_named<'s, S: 's, T, C: FromIterator<T>>(
-        &self,
-        map: impl IntoIterator<Item = (&'s String, &'s S)>,
-        make: impl Fn(&str, &S, &Self) -> Result<T>,
-    ) -> Result<C> {
-        let map = map.into_iter();
-        map.map(|(name, one)| make(name, one, &self.key(name)))
-            .collect()
-    }
-
-    /// Makes a value of what is written under a key, where something is.
-    pub(crate) fn optional<S, T>(
-        &self,
-        key: &str,
-        written: &Option<S>,
-        make: impl FnOnce(&Self, &S) -> Result<T>,
-    ) -> Result<Option<T>> {
-        let make = |one| make(&self.key(key), one);
-        written.as_ref().map(make).transpose()
     }
 
     /// Returns the error of a value here that is not the expected one.
@@ -253,6 +213,57 @@ impl<'a> Scope<'a> {
             .map_err(|(index, fault)| place(index).wrong(fault.found, fault.expected))
     }
 }
+
+/// Declares the ways from a place to those inside it, of a type that makes itself for another place by `inside`.
+macro_rules! ways_inside {
+    ($name:ident) => {
+        impl<'a> $name<'a> {
+            /// The entry under a key.
+            pub(crate) fn key(&self, key: &str) -> Self {
+                self.inside(self.place.key(key))
+            }
+
+            /// The entry at an index.
+            pub(crate) fn index(&self, index: usize) -> Self {
+                self.inside(self.place.index(index))
+            }
+
+            /// Makes a value of each entry of a list here.
+            pub(crate) fn each<S, T, C: FromIterator<T>>(
+                &self,
+                list: &[S],
+                make: impl Fn(&S, &Self) -> Result<T>,
+            ) -> Result<C> {
+                let make = |(index, one)| make(one, &self.index(index));
+                list.iter().enumerate().map(make).collect()
+            }
+
+            /// Makes a value of each entry of an object here by its name.
+            pub(crate) fn each_named<'s, S: 's, T, C: FromIterator<T>>(
+                &self,
+                map: impl IntoIterator<Item = (&'s String, &'s S)>,
+                make: impl Fn(&str, &S, &Self) -> Result<T>,
+            ) -> Result<C> {
+                let make = |(name, one): (&'s String, &'s S)| make(name, one, &self.key(name));
+                map.into_iter().map(make).collect()
+            }
+
+            /// Makes a value of what is written under a key, where something is.
+            pub(crate) fn optional<S, T>(
+                &self,
+                key: &str,
+                written: &Option<S>,
+                make: impl FnOnce(&Self, &S) -> Result<T>,
+            ) -> Result<Option<T>> {
+                let make = |one| make(&self.key(key), one);
+                written.as_ref().map(make).transpose()
+            }
+        }
+    };
+}
+pub(crate) use ways_inside;
+
+ways_inside!(Scope);
 
 /// Makes a value of the one of some entries of an object that is there, at its place.
 macro_rules! the_one {

@@ -1,7 +1,8 @@
 //! A place in a problem, and the parts of the system whose names stand there.
 
 use crate::files::json::objects::read_objects;
-use crate::files::json::scope::{Result, Scope, refuse};
+use crate::files::json::path::JsonPath;
+use crate::files::json::scope::{Result, Scope, refuse, ways_inside};
 use crate::files::scene::names::names;
 use crate::files::units::quantity::{
     Angle, AngularVelocity, Charge, ChargeDensity, Force, ForceDensity, Kind, Length,
@@ -49,55 +50,15 @@ impl<'a> At<'a> {
         }
     }
 
-    fn inside(&self, scope: Scope<'a>) -> Self {
-        let sources = Rc::clone(&self.sources);
+    fn inside(&self, place: JsonPath) -> Self {
         Self {
-            scope,
-            sources,
+            scope: Scope {
+                place,
+                ..self.scope
+            },
+            sources: Rc::clone(&self.sources),
             ..*self
         }
-    }
-
-    /// The entry under a key.
-    pub(crate) fn key(&self, key: &str) -> Self {
-        self.inside(self.scope.key(key))
-    }
-
-    /// The entry at an index.
-    pub(crate) fn index(&self, index: usize) -> Self {
-        self.inside(self.scope.index(index))
-    }
-
-    /// Makes a value of each entry of a list here.
-    pub(crate) fn each<S, T, C: FromIterator<T>>(
-        &self,
-        list: &[S],
-        make: impl Fn(&S, &Self) -> Result<T>,
-    ) -> Result<C> {
-        let make = |one: &S, entry: &Scope<'a>| make(one, &self.inside(entry.clone()));
-        self.scope.each(list, make)
-    }
-
-    /// Makes a value of what is written under a key, where something is.
-    pub(crate) fn optional<S, T>(
-        &self,
-        key: &str,
-        written: &Option<S>,
-        make: impl FnOnce(&Self, &S) -> Result<T>,
-    ) -> Result<Option<T>> {
-        let make = |entry: &Scope<'a>, one: &S| make(&self.inside(entry.clone()), one);
-        self.scope.optional(key, written, make)
-    }
-
-    /// Makes a value of each entry of an object here by its name.
-    pub(crate) fn each_named<'s, S: 's, T, C: FromIterator<T>>(
-        &self,
-        map: impl IntoIterator<Item = (&'s String, &'s S)>,
-        make: impl Fn(&str, &S, &Self) -> Result<T>,
-    ) -> Result<C> {
-        let make =
-            |name: &str, one: &S, entry: &Scope<'a>| make(name, one, &self.inside(entry.clone()));
-        self.scope.each_named(map, make)
     }
 
     fn part(&self, name: &str, kind: PartKind, expected: &str) -> Result<usize> {
@@ -210,6 +171,8 @@ impl<'a> At<'a> {
         })
     }
 }
+
+ways_inside!(At);
 
 /// Declares how parts are found whose names stand at a place.
 macro_rules! named_parts {
