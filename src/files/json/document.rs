@@ -353,7 +353,7 @@ fn limited(from: impl Read, size: u64) -> Result<Vec<u8>, NoBytes> {
 }
 
 /// A text without the byte-order mark that some editors write before it.
-pub(crate) fn unmarked(mut text: String) -> String {
+fn unmarked(mut text: String) -> String {
     if let Some(rest) = text.strip_prefix('\u{feff}') {
         text = rest.to_owned();
     }
@@ -364,7 +364,7 @@ pub(crate) fn unmarked(mut text: String) -> String {
 ///
 /// # Errors
 /// The first error in it.
-pub(crate) fn check_json(text: &str) -> Result<(), serde_json::Error> {
+fn check_json(text: &str) -> Result<(), serde_json::Error> {
     // A value that is ignored takes less time and memory, but its escapes are not decoded, and the columns of its mistakes are other ones.
     match !text.contains("\\u") && serde_json::from_str::<IgnoredAny>(text).is_ok() {
         true => Ok(()),

@@ -114,7 +114,7 @@ fn of_solution(path: &Path, system: &System) -> Result<Voltages> {
     let is_wanted = |name: &str| name == "time" || name.starts_with("voltages/");
     let (document, solution) = record(path, is_wanted)?;
     let at = At::new(&Scope::of(&document), system);
-    let instants: Vec<f64> = solution.time.iter().map(|time| 1e3 * time).collect();
+    let instants = solution.times(&at)?;
     let voltages = solution
         .voltages
         .ok_or_else(|| at.missing_key("voltages"))?;

@@ -8,8 +8,8 @@ use serde_json::Value;
 
 use crate::files::json::path::Step;
 use crate::files::json::tree::{Json, Tree};
-use crate::files::npz::{self, NpzError, NpzWriter};
-use crate::files::solution::record::{ArraysOf, Reason, Result, SolutionRecord};
+use crate::files::npz::{self, NpzWriter};
+use crate::files::solution::record::{ArraysOf, SolutionRecord};
 
 /// Names of arrays that end with a name of the scene.
 const OF_NAMES: [&str; 3] = ["voltages/", "loads/", "configuration/joints/"];
@@ -84,19 +84,16 @@ pub(crate) fn complete(
     path: &Path,
     solution: &mut Tree,
     is_wanted: impl Fn(&str) -> bool,
-) -> Result<()> {
+) -> Result<(), String> {
     let named = solution.json().entry("arrays").map(Json::read);
     let Some(Ok(Some(ArraysOf { file, digits }))) = named else {
         return Ok(());
     };
     let path = path.with_file_name(&file);
-    let wrong = |cause: NpzError| Reason::Arrays {
-        path: path.clone(),
-        cause,
-    };
-    let read = npz::read(&path, is_wanted).map_err(wrong)?;
+    let shown = format!("its arrays in {}", path.display());
+    let read = npz::read(&path, is_wanted).map_err(|cause| format!("{shown}: {cause}"))?;
     if read.digits != digits {
-        return Err(Reason::OtherArrays(path));
+        return Err(format!("{shown} were written with another solution"));
     }
     // A motion without a source has voltages of none.
     solution.put(&[Step::Key("voltages".to_owned())], "{}");

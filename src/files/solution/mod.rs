@@ -20,5 +20,4 @@ pub(crate) use arrays::file_beside;
 pub(crate) use read::record;
 pub use read::{SolutionFile, read};
 pub(crate) use record::{Body, ConfigurationRecord};
-pub use record::{Reason, SolutionError};
 pub use write::{Written, written};

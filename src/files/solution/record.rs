@@ -1,16 +1,17 @@
 //! Types of `solution.json`.
 
-use crate::files::npz::NpzError;
+use crate::files::json::scope::{Result, Scope};
 use crate::model::system::{Joint, JointKind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::io;
-use std::path::PathBuf;
 
 /// ms in a s.
 pub(super) const SECOND: f64 = 1e3;
 /// mm in a m.
 pub(super) const METRE: f64 = 1e3;
+
+/// Values over time by name.
+pub(super) type Columns = BTreeMap<String, Vec<f64>>;
 
 /// The file.
 #[derive(Debug, Default, Serialize, Deserialize)]
@@ -24,14 +25,14 @@ pub(crate) struct SolutionRecord {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) time: Vec<f64>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) joints: Option<BTreeMap<String, Vec<f64>>>,
+    pub(crate) joints: Option<Columns>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) configuration: Option<ConfigurationRecord>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) voltages: Option<BTreeMap<String, Vec<f64>>>,
+    pub(crate) voltages: Option<Columns>,
     /// Loads by interval, in N and N m.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub(crate) loads: Option<BTreeMap<String, Vec<f64>>>,
+    pub(crate) loads: Option<Columns>,
     /// Voltages that hold the goal.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) hold: Option<BTreeMap<String, f64>>,
@@ -55,6 +56,27 @@ pub(crate) struct SolutionRecord {
     pub(super) barrier: Option<f64>,
 }
 
+impl SolutionRecord {
+    /// The instants in ms, which increase.
+    pub(crate) fn times(&self, at: &Scope<'_>) -> Result<Vec<f64>> {
+        let times: Vec<f64> = self.time.iter().map(|time| time * SECOND).collect();
+        at.key("time").increasing(&times)?;
+        Ok(times)
+    }
+
+    /// Coordinates of joints, with the keys at which they stand.
+    pub(crate) fn joint_columns(
+        &self,
+        at: &Scope<'_>,
+    ) -> Result<(&Columns, &'static [&'static str])> {
+        match (&self.configuration, &self.joints) {
+            (Some(configuration), _) => Ok((&configuration.joints, &["configuration", "joints"])),
+            (None, Some(joints)) => Ok((joints, &["joints"])),
+            (None, None) => Err(at.wrong("neither of them", "\"configuration\" or \"joints\"")),
+        }
+    }
+}
+
 /// A file of arrays next to a solution.
 #[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct ArraysOf {
@@ -68,7 +90,7 @@ pub(super) struct ArraysOf {
 pub(crate) struct ConfigurationRecord {
     #[serde(default)]
     pub(crate) bodies: BTreeMap<String, Body>,
-    pub(crate) joints: BTreeMap<String, Vec<f64>>,
+    pub(crate) joints: Columns,
 }
 
 /// Centre (m) and directors d₁, d₂, d₃ of a body at each instant.
@@ -106,63 +128,4 @@ pub(super) fn unit(joint: &Joint) -> f64 {
         JointKind::Prismatic { .. } => METRE,
         _ => 1.0,
     }
-}
-
-/// An earlier solution cannot be used.
-#[derive(Debug, thiserror::Error)]
-#[error("{}: {reason}", path.display())]
-pub struct SolutionError {
-    /// The file.
-    pub path: PathBuf,
-    /// Reason.
-    pub reason: Reason,
-}
-
-/// The content of a file, or why it is no solution.
-pub(super) type Result<T, E = Reason> = std::result::Result<T, E>;
-
-/// Reason why a file is no solution of a scene.
-#[derive(Debug, thiserror::Error)]
-pub enum Reason {
-    /// It cannot be read.
-    #[error("cannot be read: {0}")]
-    Unreadable(io::Error),
-    /// There is not enough memory for its contents.
-    #[error("found {found}, expected {expected}")]
-    TooLarge {
-        /// Its size.
-        found: String,
-        /// The largest one.
-        expected: String,
-    },
-    /// It is not JSON.
-    #[error("no JSON: {0}")]
-    NoJson(serde_json::Error),
-    /// It is JSON, but no solution.
-    #[error(
-        "{place}: {found}; a solution.json holds \"time\", \"voltages\", and joint coordinates in \"configuration\" or \"joints\""
-    )]
-    NoSolution {
-        /// Path in the file.
-        place: String,
-        /// Value that was found there.
-        found: String,
-    },
-    /// Its names are not those of the scene.
-    #[error("belongs to another scene: {0}")]
-    OtherScene(String),
-    /// Its arrays cannot be used.
-    #[error("its arrays in {}: {cause}", path.display())]
-    Arrays {
-        /// Their file.
-        path: PathBuf,
-        /// Cause.
-        cause: NpzError,
-    },
-    /// Its arrays were written with another file.
-    #[error("its arrays in {} were written with another solution", .0.display())]
-    OtherArrays(PathBuf),
-    /// Its parts do not fit together.
-    #[error("{0}")]
-    Contradiction(String),
 }

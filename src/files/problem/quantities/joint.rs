@@ -202,27 +202,21 @@ pub(crate) fn read_solution_joints(path: &Path, system: &System) -> Result<Vec<(
     let (document, solution) = record(path, is_wanted)?;
     let at = At::new(&Scope::of(&document), system);
     let place = at.key("time");
-    let times: Vec<f64> = solution.time.iter().map(|time| 1e3 * time).collect();
+    let times = solution.times(&at)?;
     refuse!(if times.is_empty(), place; found "no instant", expected "one or more");
-    place.increasing(&times)?;
-    let (joints, place) = match (solution.configuration, solution.joints) {
-        (Some(configuration), _) => (configuration.joints, at.key("configuration").key("joints")),
-        (None, Some(joints)) => (joints, at.key("joints")),
-        (None, None) => {
-            return Err(at.wrong("neither of them", "\"configuration\" or \"joints\""));
-        }
-    };
-    let signal = |(name, values): (String, Vec<f64>)| {
-        let place = place.key(&name);
-        let joint = place.coordinate(&name)?;
+    let (joints, keys) = solution.joint_columns(&at)?;
+    let place = keys.iter().fold(at, |at, key| at.key(key));
+    let signal = |(name, values): (&String, &Vec<f64>)| {
+        let place = place.key(name);
+        let joint = place.coordinate(name)?;
         refuse!(if values.len() != times.len(), place;
             found format!("{} values", values.len()),
             expected format!("{}, one for each instant", times.len()));
         let (_, si) = place.kind_of(joint).unit();
-        let values = values.into_iter().map(|value| si.recip() * value);
+        let values = values.iter().map(|value| si.recip() * value);
         let values = values.collect();
         let times = times.clone();
         Ok((joint, Signal::Table { times, values }))
     };
-    joints.into_iter().map(signal).collect()
+    joints.iter().map(signal).collect()
 }
