@@ -7,7 +7,6 @@ use std::path::{Path, PathBuf};
 use thiserror::Error;
 
 use crate::files::SceneError;
-use crate::files::urdf::UrdfError;
 use crate::report::atomic::WriteError;
 use crate::stop::Stopped;
 use crate::workflow::WorkflowError;
@@ -15,12 +14,9 @@ use crate::workflow::WorkflowError;
 /// A command ends without an answer.
 #[derive(Debug, Error)]
 pub enum CommandError {
-    /// A scene, problem or override is wrong.
+    /// A scene, problem, override or URDF file is wrong.
     #[error(transparent)]
     Scene(#[from] SceneError),
-    /// A URDF file is wrong.
-    #[error(transparent)]
-    Urdf(#[from] UrdfError),
     /// An earlier solution cannot be used.
     #[error(transparent)]
     Earlier(Box<dyn StdError + Send + Sync>),

@@ -60,12 +60,9 @@ pub fn driven_voltages(words: &[String], system: &System) -> Result<Vec<f64>> {
     let mut voltages = vec![None; sources.len()];
     let mistake = |word: &str, expected: String, nearest: Option<String>| -> SceneError {
         Mistake {
-            file: "command line".to_owned(),
             path: "--voltages".to_owned(),
-            found: format!("{word:?}"),
-            expected,
             nearest,
-            ..Mistake::default()
+            ..Mistake::of_file("command line", format!("{word:?}"), expected)
         }
         .into()
     };

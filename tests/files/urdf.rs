@@ -375,7 +375,7 @@ proptest! {
             for insert in [&text[..], "", "1e300", "-1", "nan", "\"", "/>", "<link name=\"x\"/>"] {
                 let changed = format!("{}{insert}{}", &ROBOT[..start], &ROBOT[end..]);
                 if let Err(error) = parse_urdf(Path::new("r.urdf"), &changed) {
-                    prop_assert!(!error.found.is_empty() && !error.expected.is_empty());
+                    prop_assert!(!error.found().is_empty() && !error.expected().is_empty());
                 }
             }
         }

@@ -171,13 +171,10 @@ impl Document {
     ) -> Mistake {
         let (span, overridden) = self.source(place, at_key);
         Mistake {
-            file: self.path.display().to_string(),
             path: self.in_file(place).to_string(),
-            found: found.into(),
-            expected: expected.into(),
-            nearest: None,
             source: span.map(|span| self.excerpt(span)),
             overridden: overridden.cloned(),
+            ..Mistake::of_file(self.path.display().to_string(), found, expected)
         }
     }
 

@@ -32,6 +32,22 @@ pub(crate) struct Mistake {
     pub(crate) overridden: Option<JsonPath>,
 }
 
+impl Mistake {
+    /// One of a file, or of a line of it, without more places.
+    pub(crate) fn of_file(
+        file: impl Into<String>,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> Self {
+        Self {
+            file: file.into(),
+            found: found.into(),
+            expected: expected.into(),
+            ..Self::default()
+        }
+    }
+}
+
 /// Lines of a file around a value.
 #[derive(Clone, Debug)]
 pub(crate) struct Excerpt {

@@ -47,6 +47,11 @@ impl<'a> Scope<'a> {
         self.wrong(format!("no key {key:?}"), format!("the key {key:?}"))
     }
 
+    /// The error of a fault, as it is told, of what stands here.
+    pub(crate) fn told(&self, fault: Fault) -> SceneError {
+        self.wrong(fault.found, fault.expected)
+    }
+
     /// The error of a fault of what is written here.
     pub(crate) fn refuse<S: Serialize + JsonSchema>(
         &self,
@@ -209,8 +214,7 @@ impl<'a> Scope<'a> {
         reserved: &[&str],
         place: impl Fn(usize) -> Self,
     ) -> Result<()> {
-        unique(names, reserved)
-            .map_err(|(index, fault)| place(index).wrong(fault.found, fault.expected))
+        unique(names, reserved).map_err(|(index, fault)| place(index).told(fault))
     }
 }
 

@@ -83,13 +83,12 @@ impl Override {
     pub(crate) fn apply(&self, document: &mut Document) -> Result<()> {
         let way = Way::to(&self.place, document.json());
         if let Some((found, expected)) = way.obstacle(&self.place) {
+            let file = document.path.display().to_string();
+            let found = format!("{found} in {:?}", self.written);
             return Err(Mistake {
-                file: document.path.display().to_string(),
                 path: self.place.to_string(),
-                found: format!("{found} in {:?}", self.written),
-                expected,
                 overridden: Some(self.typed.clone()),
-                ..Mistake::default()
+                ..Mistake::of_file(file, found, expected)
             }
             .into());
         }
@@ -102,12 +101,9 @@ impl Override {
 /// A mistake of what is typed, of an override with its place.
 fn typed_wrong(place: Option<JsonPath>, found: String, expected: &str) -> SceneError {
     let mistake = Mistake {
-        file: "command line".to_owned(),
         path: place.as_ref().map_or_else(String::new, JsonPath::to_string),
-        found,
-        expected: expected.to_owned(),
         overridden: place,
-        ..Mistake::default()
+        ..Mistake::of_file("command line", found, expected)
     };
     mistake.into()
 }

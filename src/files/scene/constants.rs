@@ -4,6 +4,7 @@
 //! moments of inertia do. So every number of a scene can be sought on which nothing but such constants depends, whatever it is written as.
 
 use serde_json::Value;
+use std::fmt::Display;
 
 use crate::files::json::document::Document;
 use crate::files::json::error::SceneError;
@@ -15,6 +16,7 @@ use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::material::named_material;
 use crate::files::scene::spec::SceneSpec;
 use crate::files::study::ChangesSpec;
+use crate::math::Fault;
 use crate::model::system::System;
 use crate::model::{Constant, Follower};
 
@@ -42,17 +44,6 @@ pub(crate) struct SceneConstant {
     pub(crate) value: f64,
 }
 
-/// Reason why a path names no number that can be sought.
-#[derive(Debug)]
-pub(crate) struct NoConstant {
-    /// The bound, 0 or 1, that is wrong; none where it is the path.
-    pub(crate) value: Option<usize>,
-    /// Value or path that was found.
-    pub(crate) found: String,
-    /// Value or path that is expected.
-    pub(crate) expected: String,
-}
-
 /// Paths that may be sought.
 const OFFERED: &str = "the path of a number of the scene, such as \"materials.NAME.shear_modulus\", \"muscles.NAME.from.at[0]\", \
      \"chain.muscles.arm\", \"springs.NAME.stiffness\", \"joints.NAME.damping\", \"bodies.NAME.mass\"";
@@ -66,39 +57,19 @@ const PLACES: [f64; 3] = [BETWEEN, 1.0 - BETWEEN, 0.79];
 /// A factor that differs by less from one is one.
 const ONE: f64 = 1e-12;
 
-impl NoConstant {
-    fn of_path(found: impl Into<String>, expected: impl Into<String>) -> Self {
-        Self {
-            value: None,
-            found: found.into(),
-            expected: expected.into(),
-        }
-    }
+/// The fault of a path.
+fn of_path(found: impl Display, expected: impl Display) -> Fault {
+    Fault::new("", found, expected)
+}
 
-    fn of_value(error: &SceneError) -> Self {
-        Self {
-            value: Some(0),
-            ..Self::of_path(error.found(), error.expected())
-        }
-    }
-
-    /// The error at a place.
-    pub(crate) fn at(self, place: &Scope<'_>) -> SceneError {
-        place.wrong(self.found, self.expected)
-    }
-
-    /// The same, where it is the upper bound that is wrong.
-    fn of_upper(self) -> Self {
-        Self {
-            value: self.value.map(|_| 1),
-            ..self
-        }
-    }
+/// The fault of a value, called the lower bound.
+fn of_value(error: &SceneError) -> Fault {
+    Fault::new("min", error.found(), error.expected())
 }
 
 impl WrittenScene<'_> {
     /// The text of the scene as it is written, with all that a path may name.
-    fn text_for(&self, path: &JsonPath) -> Result<String, NoConstant> {
+    fn text_for(&self, path: &JsonPath) -> Result<String, Fault> {
         let mut spec = self.spec.clone();
         add_named(&mut spec);
         let is_of_chain = matches!(path.0.first(), Some(Step::Key(key)) if key == "chain");
@@ -108,7 +79,7 @@ impl WrittenScene<'_> {
         {
             let material = named_material(name).ok_or_else(|| {
                 let found = format!("{name:?}, which is no material of the scene");
-                NoConstant::of_path(found, "the name of a material")
+                of_path(found, "the name of a material")
             })?;
             spec.materials.insert(name.clone(), material);
         }
@@ -123,16 +94,16 @@ impl WrittenScene<'_> {
         value_at(&self.text_for(path).ok()?, path)
     }
 
-    /// The system of the scene with a value in the place of a path.
-    pub(crate) fn with(&self, path: &JsonPath, value: &Value) -> Result<System, NoConstant> {
+    /// The system of the scene with a value in the place of a path; a value that is wrong is the lower bound, `min`, by its place.
+    pub(crate) fn with(&self, path: &JsonPath, value: &Value) -> Result<System, Fault> {
         let mut document = Document::of_text(&self.document.path, self.text_for(path)?)
-            .map_err(|error| NoConstant::of_value(&error))?;
+            .map_err(|error| of_value(&error))?;
         let change = Override::new(path.clone(), value.clone());
         let applied = change.apply(&mut document);
-        applied.map_err(|error| NoConstant::of_path(error.found(), error.expected()))?;
+        applied.map_err(|error| of_path(error.found(), error.expected()))?;
         let changed = document.parse();
         let system = changed.and_then(|spec| build_scene(&spec, &Scope::of(&document)));
-        system.map_err(|error| NoConstant::of_value(&error))
+        system.map_err(|error| of_value(&error))
     }
 
     /// The number at a path, of which both bounds are given as they are written, and in units of the International System.
@@ -141,14 +112,17 @@ impl WrittenScene<'_> {
         path: &str,
         written: [&Value; 2],
         [lower, upper]: [f64; 2],
-    ) -> Result<SceneConstant, NoConstant> {
-        let place = JsonPath::parse(path).ok_or_else(|| {
-            NoConstant::of_path("no number of the scene that can be sought", OFFERED)
-        })?;
+    ) -> Result<SceneConstant, Fault> {
+        let place = JsonPath::parse(path)
+            .ok_or_else(|| of_path("no number of the scene that can be sought", OFFERED))?;
+        // What is wrong of the path is found with the lower bound.
+        let of_upper = |fault: Fault| Fault {
+            at: "max".to_owned(),
+            ..fault
+        };
         let [mut low, mut high] = [
             self.with(&place, written[0])?,
-            self.with(&place, written[1])
-                .map_err(NoConstant::of_upper)?,
+            self.with(&place, written[1]).map_err(of_upper)?,
         ];
         let mut base = self.system.clone();
         let mut changes = Vec::new();
@@ -160,7 +134,7 @@ impl WrittenScene<'_> {
             }
             let given = constant.value(&mut base).ok_or_else(|| {
                 let found = format!("{}, which the scene has to name", constant.lacking());
-                NoConstant::of_path(found, OFFERED)
+                of_path(found, OFFERED)
             })?;
             changes.push(Change {
                 constant,
@@ -180,9 +154,9 @@ impl WrittenScene<'_> {
         place: &JsonPath,
         changes: &[Change],
         [lower, upper]: [f64; 2],
-    ) -> Result<Vec<(Follower, f64)>, NoConstant> {
+    ) -> Result<Vec<(Follower, f64)>, Fault> {
         let at = PLACES.map(|part| lower + part * (upper - lower));
-        let values = |at: f64| -> Result<Vec<f64>, NoConstant> {
+        let values = |at: f64| -> Result<Vec<f64>, Fault> {
             let mut system = self.with(place, &Value::from(at))?;
             let value = |change: &Change| change.constant.value(&mut system).unwrap_or(f64::NAN);
             Ok(changes.iter().map(value).collect())
@@ -209,12 +183,7 @@ impl WrittenScene<'_> {
     }
 
     /// That nothing of the system depends on the number but the followers.
-    fn check_rest(
-        &self,
-        mut base: System,
-        changes: &[Change],
-        high: &System,
-    ) -> Result<(), NoConstant> {
+    fn check_rest(&self, mut base: System, changes: &[Change], high: &System) -> Result<(), Fault> {
         for change in changes {
             change.constant.set(change.ends[1], &mut base);
         }
@@ -226,14 +195,14 @@ impl WrittenScene<'_> {
                 "a number of the scene on which more depends than constants of energies"
             }
         };
-        Err(NoConstant::of_path(found, OFFERED))
+        Err(of_path(found, OFFERED))
     }
 }
 
 /// The reason of a number by which constants curve otherwise.
-fn no_polynomial() -> NoConstant {
+fn no_polynomial() -> Fault {
     let found = "a number of the scene of which a constant is no polynomial of third degree";
-    NoConstant::of_path(found, OFFERED)
+    of_path(found, OFFERED)
 }
 
 /// A constant that the bounds of a number change.

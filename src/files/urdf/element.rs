@@ -5,22 +5,8 @@ use roxmltree::Node;
 use std::collections::BTreeMap;
 use std::fmt;
 use std::path::Path;
-use thiserror::Error;
 
-/// A mistake in a URDF file.
-#[derive(Clone, Debug, Error, PartialEq, Eq)]
-#[error("{place}: found {found}, expected {expected}")]
-pub struct UrdfError {
-    /// File, with the line where it is known.
-    pub place: String,
-    /// Value that was found.
-    pub found: String,
-    /// Value that is expected instead.
-    pub expected: String,
-}
-
-/// A part of a robot, or the first mistake.
-pub(super) type Result<T, E = UrdfError> = std::result::Result<T, E>;
+use crate::files::json::error::{Mistake, Result, SceneError};
 
 /// Parts of a file that are left out, by their kinds, each with its owners.
 #[derive(Debug, Default)]
@@ -58,17 +44,18 @@ pub(super) struct Element<'a> {
 
 impl<'a> Element<'a> {
     /// The error of this element.
-    pub(super) fn wrong(&self, found: impl Into<String>, expected: impl Into<String>) -> UrdfError {
+    pub(super) fn wrong(
+        &self,
+        found: impl Into<String>,
+        expected: impl Into<String>,
+    ) -> SceneError {
         let line = self
             .node
             .document()
             .text_pos_at(self.node.range().start)
             .row;
-        UrdfError {
-            place: format!("{}:{line}: {}", self.path.display(), self.owner),
-            found: found.into(),
-            expected: expected.into(),
-        }
+        let place = format!("{}:{line}: {}", self.path.display(), self.owner);
+        Mistake::of_file(place, found, expected).into()
     }
 
     /// An element within it, of the same owner.
@@ -124,7 +111,7 @@ impl<'a> Element<'a> {
         }
     }
 
-    fn no_numbers(&self, name: &str, text: &str, count: usize) -> UrdfError {
+    fn no_numbers(&self, name: &str, text: &str, count: usize) -> SceneError {
         let expected = match count {
             1 => "a number".to_owned(),
             count => format!("{count} numbers"),

@@ -11,24 +11,22 @@ mod read;
 mod scene;
 mod tree;
 
-pub use element::UrdfError;
 pub use scene::FromUrdf;
 
 use roxmltree::Document;
 use std::path::Path;
 
 use crate::files::json::document::{NoBytes, of_file};
-use crate::files::urdf::element::{LeftOut, Result};
+use crate::files::json::error::{Mistake, Result, SceneError};
+use crate::files::urdf::element::LeftOut;
 
 /// Reads a file.
 ///
 /// # Errors
 /// It cannot be read, or is no tree of links and joints that a scene can hold.
 pub fn read_urdf(path: &Path) -> Result<FromUrdf> {
-    let wrong = |found: &str, expected: &str| UrdfError {
-        place: path.display().to_string(),
-        found: found.to_owned(),
-        expected: expected.to_owned(),
+    let wrong = |found: &str, expected: &str| -> SceneError {
+        Mistake::of_file(path.display().to_string(), found, expected).into()
     };
     let bytes = of_file(path).map_err(|error| match error {
         NoBytes::Unreadable(cause) => wrong(&format!("no readable file ({cause})"), "a URDF file"),
@@ -44,10 +42,10 @@ pub fn read_urdf(path: &Path) -> Result<FromUrdf> {
 /// # Errors
 /// As of [`read_urdf`].
 pub fn parse_urdf(path: &Path, text: &str) -> Result<FromUrdf> {
-    let document = Document::parse(text).map_err(|error| UrdfError {
-        place: format!("{}:{}", path.display(), error.pos().row),
-        found: format!("no XML ({error})"),
-        expected: "a URDF file; a file of xacro is expanded by xacro first".to_owned(),
+    let document = Document::parse(text).map_err(|error| {
+        let place = format!("{}:{}", path.display(), error.pos().row);
+        let expected = "a URDF file; a file of xacro is expanded by xacro first";
+        Mistake::of_file(place, format!("no XML ({error})"), expected)
     })?;
     let mut left_out = LeftOut::default();
     let robot = read::robot(path, &document, &mut left_out)?;

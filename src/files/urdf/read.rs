@@ -4,9 +4,9 @@ use nalgebra::{Isometry3, Matrix3, Vector3};
 use roxmltree::{Document, Node};
 use std::path::Path;
 
-use crate::files::json::scope::refuse;
+use crate::files::json::scope::{Result, refuse};
 use crate::files::scene::point::direction;
-use crate::files::urdf::element::{Element, LeftOut, Result};
+use crate::files::urdf::element::{Element, LeftOut};
 use crate::model::system::{Shape, principal};
 
 /// Relative excess of a moment over the sum of the two others that is one of rounding.

@@ -5,10 +5,10 @@ use serde_json::{Map, Value, json};
 use std::path::Path;
 
 use crate::files::json::layout::lay_out;
-use crate::files::json::scope::refuse;
+use crate::files::json::scope::{Result, refuse};
 use crate::files::scene::spec::SceneSpec;
 use crate::files::stl;
-use crate::files::urdf::element::{LeftOut, Result};
+use crate::files::urdf::element::LeftOut;
 use crate::files::urdf::outline::{Outline, outline, rounded, turned};
 use crate::files::urdf::read::{Inertial, Joint, Kind, Robot, Visual};
 use crate::files::urdf::tree::Tree;

@@ -3,8 +3,7 @@
 use nalgebra::Isometry3;
 use std::collections::BTreeMap;
 
-use crate::files::json::scope::refuse;
-use crate::files::urdf::element::Result;
+use crate::files::json::scope::{Result, refuse};
 use crate::files::urdf::read::{Kind, Robot};
 
 /// Links by their places in the file.
