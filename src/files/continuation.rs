@@ -10,7 +10,6 @@ use crate::dynamics::{DiscreteTrajectory, Inputs, StepState, StepperReport, Tang
 
 use crate::files::npz::{self, Array, Npz, NpzError, NpzWriter};
 use crate::sparse::MethodState;
-use crate::sparse::multigrid::MultigridReport;
 
 /// Name of the text of the problem.
 const PROBLEM: &str = "problem.json";
@@ -91,24 +90,7 @@ pub fn bytes(discrete: &DiscreteTrajectory, problem: &str) -> io::Result<Vec<u8>
         arrays.list("tangent/step", tangent.step.as_slice());
         arrays.list("tangent/matrix", &tangent.matrix);
     }
-    let counts = [
-        report.steps,
-        report.iterations,
-        report.halved,
-        report.factorisations,
-    ];
-    arrays.list("report/counts", &counts.map(|count| count as f64));
-    let seconds = [report.assembly, report.factorisation, report.solution];
-    arrays.list("report/seconds", &seconds);
-    arrays.list("report/energies", &[report.made, report.exchanged]);
-    let MultigridReport {
-        iterations,
-        hierarchies,
-        levels,
-        bytes,
-    } = report.multigrid;
-    let counts = [report.fallbacks, iterations, hierarchies, levels, bytes];
-    arrays.list("report/multigrid", &counts.map(|count| count as f64));
+    add_report(&mut arrays, report);
     arrays.list("wanted", wanted.as_slice());
     arrays.list("tolerance", tolerance.as_slice());
     Ok(arrays.finish()?.0)
@@ -190,37 +172,43 @@ fn state(file: &mut Npz) -> Result<StepState> {
             })
         }
     };
-    let counts = numbers::<4>(file, "report/counts")?;
-    let [steps, iterations, halved, factorisations] = counts.map(|count| count as usize);
-    let [assembly, factorisation, solution] = numbers(file, "report/seconds")?;
-    let [made, exchanged] = numbers(file, "report/energies")?;
-    let counts = numbers::<5>(file, "report/multigrid")?;
-    let [fallbacks, krylov, hierarchies, levels, bytes] = counts.map(|count| count as usize);
     Ok(StepState {
         of: file.texts.remove(OF).unwrap_or_default(),
         lists: lists.collect(),
         tangent,
-        report: StepperReport {
-            steps,
-            iterations,
-            halved,
-            factorisations,
-            assembly,
-            factorisation,
-            solution,
-            made,
-            exchanged,
-            fallbacks,
-            multigrid: MultigridReport {
-                iterations: krylov,
-                hierarchies,
-                levels,
-                bytes,
-            },
-        },
+        report: report(file)?,
         wanted: list(file, "wanted")?.first().copied(),
         tolerance: list(file, "tolerance")?.first().copied(),
     })
+}
+
+/// Declares the numbers of a report: names of arrays, and the fields that they hold.
+macro_rules! report {
+    ($($name:literal: $($($field:ident).+),+;)*) => {
+        fn add_report(arrays: &mut NpzWriter, of: &StepperReport) {
+            $(arrays.list($name, &[$(of.$($field).+ as f64),+]);)*
+        }
+
+        fn report(file: &mut Npz) -> Result<StepperReport> {
+            let mut of = StepperReport::default();
+            $(
+                let values = list(file, $name)?;
+                let mut next = values.iter();
+                $(of.$($field).+ = *next.next().ok_or(ContinuationError::Missing($name))? as _;)+
+                if next.next().is_some() {
+                    return Err(ContinuationError::Missing($name));
+                }
+            )*
+            Ok(of)
+        }
+    };
+}
+
+report! {
+    "report/counts": steps, iterations, halved, factorisations;
+    "report/seconds": assembly, factorisation, solution;
+    "report/energies": made, exchanged;
+    "report/multigrid": fallbacks, multigrid.iterations, multigrid.hierarchies, multigrid.levels, multigrid.bytes;
 }
 
 fn taken(file: &mut Npz, name: &'static str) -> Result<Array> {

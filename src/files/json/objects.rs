@@ -6,6 +6,7 @@
 ///   there is none.
 /// - `enum`: words. With a type behind a colon each means the variant of it of the same name, or of the name behind `=`.
 /// - `either`: a scalar or else an object, with both for messages.
+/// - `auto`: `"auto"`, with a type of that word alone, or a value, with both for messages and true if the value is a whole number.
 macro_rules! objects {
     ($($(#[$about:meta])* pub $kind:tt $name:ident $(<$of:ident: $bound:path>)? $(: $meaning:ident)? $(($expected:expr))? { $($entries:tt)* })*) => {
         $($crate::files::json::objects::objects!(@$kind
@@ -80,6 +81,31 @@ macro_rules! objects {
                     expected: $expected,
                     scalar: Self::$scalar,
                     object: Self::$object,
+                })
+            }
+        }
+    };
+    (@auto [($($written:path)?) $(#[$about:meta])* $name:ident ($expected:expr)] []
+     $(#[$of_type:meta])* $word:ident { $(#[$of_word:meta])* Auto }, $(#[$of_value:meta])* $value:ident: $of:ty, $is_whole:literal) => {
+        $crate::files::json::objects::objects!(@enum [($($written)?) $(#[$of_type])* $word] [] $(#[$of_word])* Auto,);
+
+        #[derive(Clone, Debug, schemars::JsonSchema $(, $written)?)]
+        $(#[$about])*
+        #[serde(untagged)]
+        pub enum $name {
+            /// `"auto"`.
+            Word($word),
+            $(#[$of_value])*
+            $value($of),
+        }
+
+        impl<'de> serde::Deserialize<'de> for $name {
+            fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                deserializer.deserialize_any($crate::files::json::either::AutoOr {
+                    expected: $expected,
+                    auto: Self::Word($word::Auto),
+                    value: Self::$value,
+                    is_whole: $is_whole,
                 })
             }
         }

@@ -4,7 +4,6 @@ use crate::control::Earlier;
 use crate::control::problem::{
     BoundaryState, Control, Duration, Guess, Objective, Solver, Voltages, absent_loads,
 };
-use crate::files::json::either::AutoOr;
 use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::problem::at::{At, CoordinatesSpec, ELECTRIC_KEYS};
@@ -28,8 +27,8 @@ use crate::math::Random;
 use crate::model::Graph;
 use crate::model::system::{Fidelity, Muscle, Source, System};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::Deserialize;
 use serde::de::IgnoredAny;
-use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -403,36 +402,19 @@ impl JsonSchema for MotionSpec {
     }
 }
 
-/// Number of intervals.
-#[derive(Clone, Copy, Debug, JsonSchema)]
-#[serde(untagged)]
-pub enum IntervalsSpec {
-    /// `"auto"`.
-    Word(IntervalsWord),
-    /// A number.
-    Given(usize),
-}
-
-/// Intervals of no given number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum IntervalsWord {
-    /// As many as the verification needs.
-    Auto,
-}
-
-impl<'de> Deserialize<'de> for IntervalsSpec {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(AutoOr {
-            expected: "a whole number of intervals, or \"auto\"",
-            auto: Self::Word(IntervalsWord::Auto),
-            value: Self::Given,
-            is_whole: true,
-        })
-    }
-}
-
 read_objects! {
+    /// Number of intervals.
+    #[derive(Copy)]
+    pub auto IntervalsSpec("a whole number of intervals, or \"auto\"") {
+        /// Intervals of no given number.
+        IntervalsWord {
+            /// As many as the verification needs.
+            Auto
+        },
+        /// A number.
+        Given: usize, true
+    }
+
     /// Bounds of a free final time.
     pub struct FreeDurationSpec {
         /// Lower bound, SI unit s.

@@ -3,7 +3,6 @@
 use crate::control::problem::Simulation;
 use crate::dynamics::{Integrator, MultigridUse, Newton, Solving};
 use crate::feedback::Law;
-use crate::files::json::either::AutoOr;
 use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::problem::at::{At, CoordinatesSpec};
@@ -13,8 +12,6 @@ use crate::files::problem::state::StartSpec;
 use crate::files::units::quantity::{Quantity, Time};
 use crate::math::shortest;
 use crate::sparse::Backend;
-use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer};
 
 /// Tolerances below this ask for more than rounding allows.
 pub(crate) const LEAST_TOLERANCE: f64 = 1e-9;
@@ -134,38 +131,18 @@ read_objects! {
         /// Method by which its linear systems are solved; `auto` where not written.
         pub linear_solver: Option<LinearSolverSpec>,
     }
-}
 
-/// Length of the steps.
-#[derive(Clone, Debug, JsonSchema)]
-#[serde(untagged)]
-pub enum StepSpec {
-    /// `"auto"`.
-    Word(StepWord),
-    /// A length of time.
-    Given(Quantity<Time>),
-}
-
-/// Steps of no given length.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum StepWord {
-    /// By an estimate of their local error.
-    Auto,
-}
-
-impl<'de> Deserialize<'de> for StepSpec {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(AutoOr {
-            expected: "a time, such as \"10 ms\", or \"auto\"",
-            auto: Self::Word(StepWord::Auto),
-            value: Self::Given,
-            is_whole: false,
-        })
+    /// Length of the steps.
+    pub auto StepSpec("a time, such as \"10 ms\", or \"auto\"") {
+        /// Steps of no given length.
+        StepWord {
+            /// By an estimate of their local error.
+            Auto
+        },
+        /// A length of time.
+        Given: Quantity<Time>, false
     }
-}
 
-read_objects! {
     /// Occasions at which the tangent of a step is factorised.
     pub enum NewtonSpec: Newton {
         /// In every iteration.
