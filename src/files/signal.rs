@@ -162,7 +162,7 @@ objects! {
 }
 
 /// The usual header of times.
-fn time() -> String {
+pub(crate) fn time() -> String {
     "time".to_owned()
 }
 

@@ -150,8 +150,8 @@ impl Control {
         check_waypoints(&self.task.waypoints, is_periodic, system)?;
         check_limits(&self.task.limits, system)?;
         let control = problem::Control {
-            start: self.start.resolve(system, sources.len())?,
-            goal: self.goal.resolve(system, sources.len())?,
+            start: self.start.resolve(system)?,
+            goal: self.goal.resolve(system)?,
             load_bounds,
             given,
             ..self.task.clone()

@@ -2,7 +2,7 @@
 
 use crate::control::problem::AtRest;
 use crate::dynamics::EnergyExchange;
-use crate::interface::error::{Entry, Error, Result, source};
+use crate::interface::error::{Entry, Error, Result, row};
 use crate::interface::handle::{Handle, Input, builder};
 use crate::interface::motion::Motion;
 use crate::math::refuse;
@@ -31,12 +31,7 @@ impl Equilibrium {
     /// before), no stable equilibrium was found ([`Error::Unstable`] has an unstable one), or there is no equilibrium at all.
     pub fn find(&self, system: &System) -> Result<Motion> {
         let system = &system.checked()?;
-        let mut voltages = vec![0.0; system.sources().len()];
-        for (input, value) in &self.inputs {
-            refuse!(unless value.is_finite(), Entry("equilibrium");
-                found format!("{value} of {input:?}"), expected "a finite number");
-            voltages[source(input, system)?] = *value;
-        }
+        let voltages = row(&self.inputs, "equilibrium", system)?;
         let holds = self.response == Response::Relaxed || system.has_branches();
         refuse!(unless holds, Entry("equilibrium");
             found "an instantaneous response", expected NO_BRANCHES);

@@ -97,6 +97,21 @@ pub(super) fn signals(
     Ok(signals)
 }
 
+/// A value for each source of a system, zero where nothing is said.
+pub(super) fn row(
+    inputs: &[(Input, f64)],
+    what: &'static str,
+    system: &System,
+) -> Result<Vec<f64>> {
+    let mut row = vec![0.0; system.sources().len()];
+    for (input, value) in inputs {
+        refuse!(unless value.is_finite(), Entry(what);
+            found format!("{value} of {input:?}"), expected "a finite number");
+        row[source(input, system)?] = *value;
+    }
+    Ok(row)
+}
+
 /// The source of an input of a system.
 pub(super) fn source(input: &Input, system: &System) -> Result<usize> {
     let expected = "a muscle or a driven electrode of the system";

@@ -129,7 +129,6 @@ impl Recording {
     fn resolve(&self, system: &System, parameters: &[Parameter]) -> Result<problem::Recording> {
         let scene = self.scene.as_ref().map(System::checked).transpose()?;
         let system = scene.as_ref().unwrap_or(system);
-        let sources = system.sources().len();
         let signals = signals(&self.inputs, "recording", system)?;
         let mut channels = self.channels.clone();
         let begin = self.time_offset.unwrap_or(0.0);
@@ -152,7 +151,7 @@ impl Recording {
         }
         Ok(problem::Recording {
             name: self.name.clone(),
-            start: self.start.resolve(system, sources)?,
+            start: self.start.resolve(system)?,
             regime: self.regime,
             sought_start: self.sought_start,
             is_held_out: self.is_held_out,

@@ -89,7 +89,6 @@ impl Simulation {
         refuse!(unless holds, Entry("simulation");
             found format!("{} without a step", self.integrator.name()),
             expected "a step: only the midpoint rule chooses its steps");
-        let sources = system.sources().len();
         let signals = signals(&self.voltages, "simulation", system)?;
         Ok(problem::Simulation {
             duration: self.duration,
@@ -97,7 +96,7 @@ impl Simulation {
                 .step
                 .unwrap_or(problem::Simulation::FIRST * self.duration),
             tolerance: controlled.then_some(problem::Simulation::TOLERANCE),
-            start: self.start.resolve(system, sources)?,
+            start: self.start.resolve(system)?,
             voltages: signals.into(),
             coordinates: None,
             solving: Solving {

@@ -1,7 +1,7 @@
 //! States at the ends of a motion.
 
 use crate::control::problem::{BoundaryState, Orientation, Place, Rest};
-use crate::interface::error::{Entry, Result, source};
+use crate::interface::error::{Entry, Result, row};
 use crate::interface::handle::{Handle, Input};
 use crate::math::refuse;
 use crate::model::System;
@@ -46,16 +46,11 @@ impl State {
         Self::RestAt(Vec::new())
     }
 
-    pub(super) fn resolve(&self, system: &System, sources: usize) -> Result<BoundaryState> {
+    pub(super) fn resolve(&self, system: &System) -> Result<BoundaryState> {
         Ok(match self {
             Self::Reference => BoundaryState::at_joints(BTreeMap::new()),
             Self::RestAt(voltages) => {
-                let mut row = vec![0.0; sources];
-                for (input, voltage) in voltages {
-                    refuse!(unless voltage.is_finite(), Entry("state");
-                        found format!("{voltage} of {input:?}"), expected "a finite input");
-                    row[source(input, system)?] = *voltage;
-                }
+                let row = row(voltages, "state", system)?;
                 BoundaryState::RestAtVoltages(row, Rest::Everything)
             }
             Self::Joints(values) => {

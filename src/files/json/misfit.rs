@@ -1,7 +1,7 @@
 //! Values that do not fit a type, as serde tells them, in the words of this project: the value found, the value expected, the nearest name.
 
 use serde::de::{Error, Expected, Unexpected};
-use serde_json::{Error as Plain, Value};
+use serde_json::Value;
 use std::fmt::{self, Display};
 
 use crate::files::json::error::nearest;
@@ -12,8 +12,6 @@ use crate::files::json::path::{JsonPath, Step};
 pub(crate) struct Misfit {
     /// Steps to it, the last one first.
     steps: Vec<Step>,
-    /// The same as serde tells it.
-    plain: Plain,
     pub(crate) found: String,
     pub(crate) expected: String,
     pub(crate) nearest: Option<String>,
@@ -31,10 +29,9 @@ enum Kind {
 }
 
 impl Misfit {
-    fn of(plain: Plain, found: String, expected: String) -> Self {
+    fn of(found: String, expected: String) -> Self {
         Self {
             steps: Vec::new(),
-            plain,
             found,
             expected,
             nearest: None,
@@ -43,7 +40,7 @@ impl Misfit {
     }
 
     /// Of a name that is none of those `known`.
-    fn of_name(plain: Plain, kind: Kind, name: &str, known: &[&str]) -> Self {
+    fn of_name(kind: Kind, name: &str, known: &[&str]) -> Self {
         let names = known.iter().filter(|name| !name.starts_with('$'));
         let quoted: Vec<String> = names.clone().map(|name| format!("{name:?}")).collect();
         let expected = match quoted.as_slice() {
@@ -57,7 +54,7 @@ impl Misfit {
         Self {
             nearest: nearest(name, names.copied()).filter(|_| said.is_none()),
             kind,
-            ..Self::of(plain, found, expected)
+            ..Self::of(found, expected)
         }
     }
 
@@ -93,7 +90,7 @@ impl Misfit {
 
 impl Display for Misfit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        self.plain.fmt(f)
+        write!(f, "found {}, expected {}", self.found, self.expected)
     }
 }
 
@@ -103,45 +100,31 @@ impl Error for Misfit {
     fn custom<T: Display>(message: T) -> Self {
         let message = message.to_string();
         let (found, expected) = message.rsplit_once(", expected ").unwrap_or((&message, ""));
-        Self::of(
-            Plain::custom(&message),
-            json_word(found),
-            json_word(expected),
-        )
+        Self::of(json_word(found), json_word(expected))
     }
 
     fn invalid_type(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
-        let plain = Plain::invalid_type(found, expected);
-        Self::of(plain, json_kind(found), json_word(expected))
+        Self::of(json_kind(found), json_word(expected))
     }
 
     fn invalid_value(found: Unexpected<'_>, expected: &dyn Expected) -> Self {
-        let plain = Plain::invalid_value(found, expected);
-        Self::of(plain, json_kind(found), json_word(expected))
+        Self::of(json_kind(found), json_word(expected))
     }
 
     fn invalid_length(length: usize, expected: &dyn Expected) -> Self {
-        let plain = Plain::invalid_length(length, expected);
-        Self::of(
-            plain,
-            format!("a list of length {length}"),
-            json_word(expected),
-        )
+        Self::of(format!("a list of length {length}"), json_word(expected))
     }
 
     fn unknown_variant(word: &str, known: &'static [&'static str]) -> Self {
-        let plain = Plain::unknown_variant(word, known);
-        Self::of_name(plain, Kind::Word, word, known)
+        Self::of_name(Kind::Word, word, known)
     }
 
     fn unknown_field(key: &str, known: &'static [&'static str]) -> Self {
-        let plain = Plain::unknown_field(key, known);
-        Self::of_name(plain, Kind::Key, key, known)
+        Self::of_name(Kind::Key, key, known)
     }
 
     fn missing_field(key: &'static str) -> Self {
-        let plain = Plain::missing_field(key);
-        Self::of(plain, format!("no key {key:?}"), format!("the key {key:?}"))
+        Self::of(format!("no key {key:?}"), format!("the key {key:?}"))
     }
 }
 

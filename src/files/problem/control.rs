@@ -11,7 +11,7 @@ use crate::files::problem::inputs::{
     LoadBounds, LoadMap, SOLUTION_PATH, VoltagesSpec, check_end, check_rest_voltages,
     given_voltages, load, load_bounds, loads, over_time, voltage_bounds,
 };
-use crate::files::problem::numbers::{FreeMap, SensitivityMap, parameters, with_varied};
+use crate::files::problem::numbers::{FreeMap, SensitivityMap, parameters, varied};
 use crate::files::problem::objective::{ObjectiveSpec, objective};
 use crate::files::problem::quantities::keys::{LimitSpec, limits};
 use crate::files::problem::state::{
@@ -120,7 +120,10 @@ pub(crate) fn control(
         solver: solver(&spec.solver, &at.key("solver"))?,
     };
     let control = with_peak(control, &spec.objective, &at.key("objective"))?;
-    with_varied(control, &spec.sensitivity, scene, &at.key("sensitivity"))
+    Ok(Control {
+        varied: varied(&spec.sensitivity, &control, scene, &at.key("sensitivity"))?,
+        ..control
+    })
 }
 
 /// The number of intervals that is given.

@@ -14,7 +14,7 @@ use crate::files::problem::quantities::entry::Recorded;
 use crate::files::problem::quantities::keys::MeasuredSpec;
 use crate::files::problem::state::StartSpec;
 use crate::files::scene::constants::WrittenScene;
-use crate::files::signal::{SignalCsvSpec, SignalSpec};
+use crate::files::signal::{SignalCsvSpec, SignalSpec, time};
 use crate::files::study::ChangesSpec;
 use crate::files::units::quantity::{
     MeasuredSize, PhysicalQuantity, Quantity, Ratio, SoughtConstant, Time,
@@ -561,9 +561,4 @@ read_objects! {
         /// The coordinates and the momenta.
         State,
     }
-}
-
-/// The usual header of times.
-fn time() -> String {
-    "time".to_owned()
 }

@@ -189,21 +189,8 @@ const OF_PROBLEM: [&str; 6] = [
     "objective",
 ];
 
-/// The problem with the numbers by which its optimum is differentiated.
-pub(crate) fn with_varied(
-    control: Control,
-    map: &SensitivityMap,
-    scene: &WrittenScene<'_>,
-    at: &At<'_>,
-) -> Result<Control> {
-    Ok(Control {
-        varied: varied(map, &control, scene, at)?,
-        ..control
-    })
-}
-
 /// The numbers by which the optimum of a problem is differentiated.
-fn varied(
+pub(crate) fn varied(
     map: &SensitivityMap,
     control: &Control,
     scene: &WrittenScene<'_>,

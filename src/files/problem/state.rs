@@ -220,10 +220,11 @@ pub(crate) fn goal_state(spec: &GoalSpec, at: &At<'_>) -> Result<BoundaryState> 
     };
     let key = given_key(spec, at)?;
     check_companions(spec, key, at)?;
+    let rest = spec.rest.map_or(Rest::Attainable, Rest::from);
     match (&spec.rest_at_voltages, &spec.joint_angles) {
-        (Some(map), _) => equilibrium(map, reached(spec), at),
+        (Some(map), _) => equilibrium(map, rest, at),
         (None, Some(_)) => coordinates(spec, &at.key(key)),
-        (None, None) => positions(spec, at),
+        (None, None) => positions(spec, rest, at),
     }
 }
 
@@ -269,11 +270,6 @@ fn check_companions(spec: &RestGoalSpec, key: &str, at: &Scope<'_>) -> Result<()
     Ok(())
 }
 
-/// Part of the system that comes to rest.
-fn reached(spec: &RestGoalSpec) -> Rest {
-    spec.rest.map_or(Rest::Attainable, Rest::from)
-}
-
 /// A state of rest under voltages.
 fn equilibrium(map: &VoltageMap, rest: Rest, at: &At<'_>) -> Result<BoundaryState> {
     refuse!(if rest == Rest::Bodies && at.system.bodies.is_empty(), at.key("rest");
@@ -284,11 +280,11 @@ fn equilibrium(map: &VoltageMap, rest: Rest, at: &At<'_>) -> Result<BoundaryStat
 }
 
 /// Positions of markers and orientations of bodies.
-fn positions(spec: &RestGoalSpec, at: &At<'_>) -> Result<BoundaryState> {
+fn positions(spec: &RestGoalSpec, rest: Rest, at: &At<'_>) -> Result<BoundaryState> {
     Ok(BoundaryState::Markers {
         places: of_markers(&spec.markers, &at.key("markers"))?,
         orientations: of_bodies(&spec.orientations, &at.key("orientations"))?,
-        rest: reached(spec),
+        rest,
         hold: match &spec.hold {
             Some(HeldSpec::Given(map)) => Some(at.key("hold").voltages(map)?),
             Some(HeldSpec::Word(_)) | None => None,

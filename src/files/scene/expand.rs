@@ -1,8 +1,9 @@
 //! Shorthand written out: chains as bodies, joints, muscles and a marker, and materials that are only named.
 
 use nalgebra::Vector3;
+use serde_json::json;
 
-use crate::files::scene::joint::{AxisSpec, JointSpec};
+use crate::files::scene::joint::JointSpec;
 use crate::files::scene::material::named_material;
 use crate::files::scene::point::{Point, PointSpec, direction};
 use crate::files::scene::spec::{
@@ -101,28 +102,15 @@ impl Link {
 
     fn joint(&self) -> JointSpec {
         // Adding zero turns −0 into 0.
-        let axis = self.joint_axis.map(|entry| entry + 0.0).into();
-        JointSpec {
-            name: format!("joint{}", self.number),
-            revolute: Some(AxisSpec { axis }),
-            prismatic: None,
-            universal: None,
-            cylindrical: None,
-            planar: None,
-            spherical: None,
-            floating: None,
-            fixed: None,
-            parent: self.parent(),
-            child: self.segment(),
-            at: point(&self.at),
-            locked: false,
-            damping: None,
-            stiffness: None,
-            rest_angle: None,
-            rest_displacement: None,
-            stops: None,
-            motion: None,
-        }
+        let axis = self.joint_axis.map(|entry| entry + 0.0);
+        let written = json!({
+            "name": format!("joint{}", self.number),
+            "revolute": { "axis": axis.as_slice() },
+            "parent": self.parent(),
+            "child": self.segment(),
+            "at": point(&self.at),
+        });
+        serde_json::from_value(written).expect("a link of a chain has finite places")
     }
 
     fn muscles(&self, chain: &ChainSpec) -> Vec<MuscleSpec> {
