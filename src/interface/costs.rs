@@ -16,17 +16,6 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 
 impl Control {
-    /// Minimises the electrical energy from the sources of lumped muscles, with a weight per J; energy that flows back is negative, and
-    /// the switch to the voltages that hold the goal is counted where they are known, and behind a resistor its heat.
-    pub fn electrical_energy(self, muscles: &[Handle<Muscle>], weight: f64) -> Self {
-        self.energy(SourceEnergy::Electrical, muscles, weight)
-    }
-
-    /// Minimises the mechanical work of the electrical forces of lumped muscles, with a weight per J.
-    pub fn mechanical_work(self, muscles: &[Handle<Muscle>], weight: f64) -> Self {
-        self.energy(SourceEnergy::Mechanical, muscles, weight)
-    }
-
     /// The problem with the cost of the peak voltage, where it has one.
     pub(super) fn with_peak(
         &self,
@@ -40,103 +29,53 @@ impl Control {
             expected "a voltage that is sought");
         Ok(control)
     }
-
-    fn energy(mut self, energy: SourceEnergy, muscles: &[Handle<Muscle>], weight: f64) -> Self {
-        let cost = |muscle: &Handle<Muscle>| EnergyCost {
-            source: muscle.index(),
-            energy,
-            weight,
-        };
-        self.task
-            .objective
-            .energies
-            .extend(muscles.iter().map(cost));
-        self
-    }
-
-    /// A marker follows functions of time in mm, in the directions x, y and z that have one: minimises ∫ |x − r|² dt in mm² s, with a
-    /// weight.
-    pub fn track(
-        mut self,
-        marker: Handle<Marker>,
-        along: [Option<Signal>; 3],
-        weight: f64,
-    ) -> Self {
-        let marker = marker.index();
-        for (axis, reference) in along.into_iter().enumerate() {
-            let quantity = Quantity::marker_place(marker, axis);
-            self = self.square(quantity, reference, During::Motion, weight);
-        }
-        self
-    }
-
-    /// A marker passes near a place in mm, in the directions that have a value, at the instant nearest to a part of the duration: minimises
-    /// |x − r|² there in mm², with a weight.
-    pub fn marker_passes_near(
-        mut self,
-        marker: Handle<Marker>,
-        place: [Option<f64>; 3],
-        part: f64,
-        weight: f64,
-    ) -> Self {
-        let near = Waypoint {
-            places: BTreeMap::from([(marker.index(), Place(place))]),
-            ..waypoint(part)
-        };
-        self.task.objective.quantities.extend(near.costs(weight));
-        self
-    }
-
-    /// A joint passes near a coordinate in rad or mm at the instant nearest to a part of the duration: minimises (θ − r)² there, with a
-    /// weight.
-    pub fn joint_passes_near(
-        self,
-        joint: Handle<Joint>,
-        coordinate: f64,
-        part: f64,
-        weight: f64,
-    ) -> Self {
-        let during = During::At(part);
-        self.square(of_joint(joint), Some(coordinate.into()), during, weight)
-    }
-
-    /// A marker ends near a place in mm: minimises |x − r|² at the end in mm², with a weight.
-    pub fn end_near(mut self, marker: Handle<Marker>, place: Vector3<f64>, weight: f64) -> Self {
-        let marker = marker.index();
-        for (axis, &at) in place.iter().enumerate() {
-            let quantity = Quantity::marker_place(marker, axis);
-            self = self.square(quantity, Some(at.into()), During::End, weight);
-        }
-        self
-    }
-
-    /// A joint ends near a coordinate in rad or mm: minimises (θ − r)² at the end, with a weight.
-    pub fn end_joint_near(self, joint: Handle<Joint>, at: f64, weight: f64) -> Self {
-        self.square(of_joint(joint), Some(at.into()), During::End, weight)
-    }
-
-    fn square(
-        self,
-        quantity: Quantity,
-        reference: Option<Signal>,
-        during: During,
-        weight: f64,
-    ) -> Self {
-        let cost = |reference| QuantityCost {
-            quantity,
-            weight,
-            function: CostFunction::Square { reference },
-            during,
-        };
-        match reference.map(cost) {
-            Some(cost) => self.minimise(cost),
-            None => self,
-        }
-    }
 }
 
 builder! {
     impl Control;
+    /// Minimises the electrical energy from the sources of lumped muscles, with a weight per J; energy that flows back is negative, and
+    /// the switch to the voltages that hold the goal is counted where they are known, and behind a resistor its heat.
+    electrical_energy(muscles: &[Handle<Muscle>], weight: f64) |of| {
+        of.task.objective.energies.extend(energies(SourceEnergy::Electrical, muscles, weight));
+    };
+    /// Minimises the mechanical work of the electrical forces of lumped muscles, with a weight per J.
+    mechanical_work(muscles: &[Handle<Muscle>], weight: f64) |of| {
+        of.task.objective.energies.extend(energies(SourceEnergy::Mechanical, muscles, weight));
+    };
+    /// A marker follows functions of time in mm, in the directions x, y and z that have one: minimises ∫ |x − r|² dt in mm² s, with a
+    /// weight.
+    track(marker: Handle<Marker>, along: [Option<Signal>; 3], weight: f64) |of| {
+        of.task.objective.quantities.extend(squares(marker, along, During::Motion, weight));
+    };
+    /// A marker passes near a place in mm, in the directions that have a value, at the instant nearest to a part of the duration: minimises
+    /// |x − r|² there in mm², with a weight.
+    marker_passes_near(marker: Handle<Marker>, place: [Option<f64>; 3], part: f64, weight: f64) |of| {
+        let places = BTreeMap::from([(marker.index(), Place(place))]);
+        let near = Waypoint { places, ..waypoint(part) };
+        of.task.objective.quantities.extend(near.costs(weight));
+    };
+    /// A joint passes near a coordinate in rad or mm at the instant nearest to a part of the duration: minimises (θ − r)² there, with a
+    /// weight.
+    joint_passes_near(joint: Handle<Joint>, coordinate: f64, part: f64, weight: f64) |of| {
+        of.task.objective.quantities.push(square(of_joint(joint), coordinate, During::At(part), weight));
+    };
+    /// A marker ends near a place in mm: minimises |x − r|² at the end in mm², with a weight.
+    end_near(marker: Handle<Marker>, place: Vector3<f64>, weight: f64) |of| {
+        let place = <[f64; 3]>::from(place).map(|at| Some(at.into()));
+        of.task.objective.quantities.extend(squares(marker, place, During::End, weight));
+    };
+    /// A joint ends near a coordinate in rad or mm: minimises (θ − r)² at the end, with a weight.
+    end_joint_near(joint: Handle<Joint>, at: f64, weight: f64) |of| {
+        of.task.objective.quantities.push(square(of_joint(joint), at, During::End, weight));
+    };
+    /// Minimises ∫ |v|² dt of the velocity of a marker in m²/s, with a weight.
+    low_speed(marker: Handle<Marker>, weight: f64) |of| {
+        of.task.objective.quantities.push(low(Quantity::squared_speed(marker.index()), weight));
+    };
+    /// Minimises ∫ E² dt of the true electric field of a lumped muscle without a resistor in (V/µm)² s, with a weight.
+    low_field(muscle: Handle<Muscle>, weight: f64) |of| {
+        of.task.objective.quantities.push(low(Quantity::squared_field(muscle.index(), false), weight));
+    };
     /// Minimises the square of the peak voltage in kV, the largest of all voltages that are sought, with a weight.
     peak_voltage(weight: f64) |of| of.peak_voltage = weight;
     /// A marker is at a place in mm, in the directions that have a value, at the instant nearest to a part of the duration.
@@ -158,7 +97,7 @@ macro_rules! followed {
             $($(#[$about])*
             pub fn $name(self, $part: Handle<$of>, along: impl Into<Signal>, weight: f64) -> Self {
                 let $part = $part.index();
-                self.square($quantity, Some(along.into()), During::Motion, weight)
+                self.minimise(square($quantity, along, During::Motion, weight))
             })*
         }
     };
@@ -177,24 +116,55 @@ followed! {
     track_power(muscle: Muscle) Quantity::power(muscle);
 }
 
-impl Control {
-    /// Minimises ∫ |v|² dt of the velocity of a marker in m²/s, with a weight.
-    pub fn low_speed(self, marker: Handle<Marker>, weight: f64) -> Self {
-        self.low(Quantity::squared_speed(marker.index()), weight)
-    }
+fn energies(
+    energy: SourceEnergy,
+    muscles: &[Handle<Muscle>],
+    weight: f64,
+) -> impl Iterator<Item = EnergyCost> {
+    muscles.iter().map(move |muscle| EnergyCost {
+        source: muscle.index(),
+        energy,
+        weight,
+    })
+}
 
-    /// Minimises ∫ E² dt of the true electric field of a lumped muscle without a resistor in (V/µm)² s, with a weight.
-    pub fn low_field(self, muscle: Handle<Muscle>, weight: f64) -> Self {
-        self.low(Quantity::squared_field(muscle.index(), false), weight)
+/// The squared deviation of a quantity from a function of time.
+fn square(
+    quantity: Quantity,
+    reference: impl Into<Signal>,
+    during: During,
+    weight: f64,
+) -> QuantityCost {
+    let reference = reference.into();
+    QuantityCost {
+        quantity,
+        weight,
+        function: CostFunction::Square { reference },
+        during,
     }
+}
 
-    fn low(self, quantity: Quantity, weight: f64) -> Self {
-        self.minimise(QuantityCost {
-            quantity,
-            weight,
-            function: CostFunction::Itself,
-            during: During::Motion,
-        })
+/// Those of a marker in the directions that have a function.
+fn squares(
+    marker: Handle<Marker>,
+    along: [Option<Signal>; 3],
+    during: During,
+    weight: f64,
+) -> impl Iterator<Item = QuantityCost> {
+    let along = along.into_iter().enumerate();
+    along.filter_map(move |(axis, reference)| {
+        let quantity = Quantity::marker_place(marker.index(), axis);
+        Some(square(quantity, reference?, during, weight))
+    })
+}
+
+/// A quantity that is small along the motion.
+fn low(quantity: Quantity, weight: f64) -> QuantityCost {
+    QuantityCost {
+        quantity,
+        weight,
+        function: CostFunction::Itself,
+        during: During::Motion,
     }
 }
 
@@ -251,20 +221,14 @@ ranges! {
     marker_speed_within(marker: Marker) new What::Speed(marker);
 }
 
-impl Control {
-    /// Greatest true electric field of muscles in V/mm.
-    pub fn field_below(mut self, muscles: &[Handle<Muscle>], max: f64) -> Self {
-        let limit = |muscle: &Handle<Muscle>| {
-            let place = FieldPlace::Muscle(muscle.index());
-            Limit::below(What::Field(place), max)
-        };
-        self.task.limits.extend(muscles.iter().map(limit));
-        self
-    }
-}
-
 builder! {
     impl Control;
+    /// Greatest true electric field of muscles in V/mm.
+    field_below(muscles: &[Handle<Muscle>], max: f64) |of| {
+        let place = |muscle: &Handle<Muscle>| FieldPlace::Muscle(muscle.index());
+        let places = muscles.iter().map(place);
+        of.task.limits.extend(places.map(|place| Limit::below(What::Field(place), max)));
+    };
     /// Makes the limit that was added last hold only at a part of the duration, above 0 and at most 1, the end: at the instant nearest to it, or in
     /// the interval before that instant. Nothing without a limit.
     only_at(part: f64) |of| {

@@ -173,3 +173,16 @@ macro_rules! builder {
     };
 }
 pub(super) use builder;
+
+/// Declares functions that make a part or what it is made of, each by its arguments and the value.
+macro_rules! makers {
+    (impl $part:ty => $made:ty; $($(#[$about:meta])* $name:ident($($given:ident: $of:ty),*) = $value:expr;)*) => {
+        impl $part {
+            $($(#[$about])*
+            pub fn $name($($given: $of),*) -> $made {
+                $value
+            })*
+        }
+    };
+}
+pub(super) use makers;

@@ -1,6 +1,6 @@
 //! Bodies, joints, muscles, markers, solids, elastomers, springs, loads and components of other crates, built with defaults.
 
-use crate::interface::handle::{Carrier, Handle, Part, builder, named};
+use crate::interface::handle::{Carrier, Handle, Part, builder, makers, named};
 use crate::math::{Matrix, Signal};
 use crate::mesh::Mesh;
 use crate::model::components::{BlockLoad, Faces, Load, LoadPlace, Other, Spring, Tendon};
@@ -57,22 +57,17 @@ parts! {
     Tendon in components.tendons: "tendon";
 }
 
-impl Body {
+makers! {
+    impl Body => Self;
     /// A homogeneous cylinder along z, lengths in mm.
-    pub fn cylinder(length: f64, radius: f64) -> Self {
-        Self::from_shape(Shape::Cylinder { length, radius })
-    }
-
+    cylinder(length: f64, radius: f64) = Self::from_shape(Shape::Cylinder { length, radius });
     /// A homogeneous box with edges along the axes, lengths in mm.
-    pub fn cuboid(size: [f64; 3]) -> Self {
-        Self::from_shape(Shape::Box { size })
-    }
-
+    cuboid(size: [f64; 3]) = Self::from_shape(Shape::Box { size });
     /// A homogeneous sphere, radius in mm.
-    pub fn sphere(radius: f64) -> Self {
-        Self::from_shape(Shape::Sphere { radius })
-    }
+    sphere(radius: f64) = Self::from_shape(Shape::Sphere { radius });
+}
 
+impl Body {
     /// Density in g/mm³, which gives the mass; a body without a volume keeps its mass.
     pub fn density(self, density: f64) -> Self {
         match self.shape.volume() {
@@ -94,19 +89,19 @@ builder! {
     along(axis: Vector3<f64>) |of| of.directors = directors_along(&axis.normalize());
 }
 
-impl Joint {
+makers! {
+    impl Joint => JointKind;
     /// A hinge about an axis.
-    pub fn revolute(axis: Vector3<f64>) -> JointKind {
-        let axis = axis.normalize();
-        JointKind::Revolute { axis }
-    }
-
+    revolute(axis: Vector3<f64>) = JointKind::Revolute { axis: axis.normalize() };
     /// A slide along an axis.
-    pub fn prismatic(axis: Vector3<f64>) -> JointKind {
-        let axis = axis.normalize();
-        JointKind::Prismatic { axis }
-    }
+    prismatic(axis: Vector3<f64>) = JointKind::Prismatic { axis: axis.normalize() };
+    /// A slide along an axis that also turns about it.
+    cylindrical(axis: Vector3<f64>) = JointKind::Cylindrical { axis: axis.normalize() };
+    /// A slide in a plane across a normal that also turns about it.
+    planar(normal: Vector3<f64>) = JointKind::Planar { normal: normal.normalize() };
+}
 
+impl Joint {
     /// A Cardan joint about an axis of the parent and one of the child, made perpendicular to it.
     ///
     /// # Panics
@@ -120,18 +115,6 @@ impl Joint {
         );
         let axes = [first, across.normalize()];
         JointKind::Universal { axes }
-    }
-
-    /// A slide along an axis that also turns about it.
-    pub fn cylindrical(axis: Vector3<f64>) -> JointKind {
-        let axis = axis.normalize();
-        JointKind::Cylindrical { axis }
-    }
-
-    /// A slide in a plane across a normal that also turns about it.
-    pub fn planar(normal: Vector3<f64>) -> JointKind {
-        let normal = normal.normalize();
-        JointKind::Planar { normal }
     }
 }
 
@@ -165,14 +148,10 @@ impl JointKind {
     }
 }
 
-impl Muscle {
+makers! {
+    impl Muscle => Self;
     /// A stack of a material, which still needs its ends, its section and its layers.
-    pub fn of(material: &Material) -> Self {
-        Self {
-            material: *material,
-            ..Self::default()
-        }
-    }
+    of(material: &Material) = Self { material: *material, ..Self::default() };
 }
 
 builder! {
@@ -209,35 +188,32 @@ builder! {
     layer(thickness: f64) |of| of.layer_thickness = thickness;
 }
 
-impl Marker {
+makers! {
+    impl Marker => Self;
     /// A point of a body or of the ground, in mm.
-    pub fn on(carrier: impl Into<Carrier>, at: Vector3<f64>) -> Self {
-        Self {
-            name: String::new(),
-            point: attachment(carrier, at),
-            solid: None,
-        }
-    }
-
+    on(carrier: impl Into<Carrier>, at: Vector3<f64>) = Self {
+        name: String::new(),
+        point: attachment(carrier, at),
+        solid: None,
+    };
     /// The node of a solid that is nearest to a place in mm.
-    pub fn on_solid(solid: Handle<Solid>, at: Vector3<f64>) -> Self {
-        Self {
-            solid: Some(solid.index()),
-            ..Self::on(super::GROUND, at)
-        }
-    }
+    on_solid(solid: Handle<Solid>, at: Vector3<f64>) = Self {
+        solid: Some(solid.index()),
+        ..Self::on(super::GROUND, at)
+    };
+}
+
+makers! {
+    impl Solid => Self;
+    /// A solid of one material on a mesh.
+    on(mesh: Mesh, material: &Material) = Self {
+        materials: vec![*material; mesh.region_names.len()],
+        mesh,
+        ..Self::default()
+    };
 }
 
 impl Solid {
-    /// A solid of one material on a mesh.
-    pub fn on(mesh: Mesh, material: &Material) -> Self {
-        Self {
-            materials: vec![*material; mesh.region_names.len()],
-            mesh,
-            ..Self::default()
-        }
-    }
-
     /// Nodes of a set of the mesh, such as `z_min`; none where there is no such set, which a check of the system reports.
     pub(super) fn nodes(&self, set: &str) -> Vec<usize> {
         self.mesh.sets.get(set).cloned().unwrap_or_default()
@@ -266,15 +242,13 @@ builder! {
     };
 }
 
-impl Material {
+makers! {
+    impl Material => Self;
     /// A neo-Hookean elastomer with a shear modulus in MPa, without density, permittivity or viscosity so far.
-    pub fn elastomer(shear_modulus: f64) -> Self {
-        Self {
-            shear_modulus,
-            ..Self::default()
-        }
-    }
+    elastomer(shear_modulus: f64) = Self { shear_modulus, ..Self::default() };
+}
 
+impl Material {
     /// One more Maxwell branch: shear modulus μ₁ of its spring in MPa, relaxation time in ms.
     ///
     /// # Panics
@@ -346,76 +320,44 @@ builder! {
     rest_length(rest_length: f64) |of| of.rest_length = rest_length;
 }
 
-impl Load {
+makers! {
+    impl Load => Self;
     /// A force at a point of a body in mm, along a direction that does not turn.
-    pub fn force(body: Handle<Body>, at: Vector3<f64>, direction: Vector3<f64>) -> Self {
-        Self::at_point(body, at, direction, false)
-    }
-
+    force(body: Handle<Body>, at: Vector3<f64>, direction: Vector3<f64>) = at_point(body, at, direction, false);
     /// A force at a point of a body in mm, along a direction that turns with the body.
-    pub fn following_force(body: Handle<Body>, at: Vector3<f64>, direction: Vector3<f64>) -> Self {
-        Self::at_point(body, at, direction, true)
-    }
-
-    fn at_point(
-        body: Handle<Body>,
-        at: Vector3<f64>,
-        direction: Vector3<f64>,
-        follows: bool,
-    ) -> Self {
-        Self::on(LoadPlace::Point {
-            at: attachment(body, at),
-            direction: direction.normalize(),
-            follows,
-        })
-    }
-
+    following_force(body: Handle<Body>, at: Vector3<f64>, direction: Vector3<f64>) = at_point(body, at, direction, true);
     /// A traction on faces of a solid (see [`Mesh::faces_of`](crate::mesh::Mesh::faces_of)), along a direction that does not turn.
-    pub fn traction(solid: Handle<Solid>, faces: Faces, direction: Vector3<f64>) -> Self {
-        Self::on_block(solid, BlockLoad::Traction(faces, direction.normalize()))
-    }
-
+    traction(solid: Handle<Solid>, faces: Faces, direction: Vector3<f64>) = on_block(solid, BlockLoad::Traction(faces, direction.normalize()));
     /// A pressure on faces of a solid, which follows them as they deform.
-    pub fn pressure(solid: Handle<Solid>, faces: Faces) -> Self {
-        let follows = true;
-        Self::on_block(solid, BlockLoad::Pressure { faces, follows })
-    }
-
+    pressure(solid: Handle<Solid>, faces: Faces) = on_block(solid, BlockLoad::Pressure { faces, follows: true });
     /// A pressure on faces of a solid as they are in the reference configuration.
-    pub fn dead_pressure(solid: Handle<Solid>, faces: Faces) -> Self {
-        let follows = false;
-        Self::on_block(solid, BlockLoad::Pressure { faces, follows })
-    }
-
+    dead_pressure(solid: Handle<Solid>, faces: Faces) = on_block(solid, BlockLoad::Pressure { faces, follows: false });
     /// A surface charge on faces of a solid.
-    pub fn charge(solid: Handle<Solid>, faces: Faces) -> Self {
-        Self::on_block(solid, BlockLoad::Charge(faces))
-    }
-
+    charge(solid: Handle<Solid>, faces: Faces) = on_block(solid, BlockLoad::Charge(faces));
     /// A body force of a solid, along a direction that does not turn.
-    pub fn body_force(solid: Handle<Solid>, direction: Vector3<f64>) -> Self {
-        Self::on_block(solid, BlockLoad::BodyForce(direction.normalize()))
-    }
-
-    fn on_block(solid: Handle<Solid>, load: BlockLoad) -> Self {
-        let block = solid.index();
-        Self::on(LoadPlace::Block { block, load })
-    }
-
-    fn on(on: LoadPlace) -> Self {
-        let name = String::new();
-        Self { name, on }
-    }
-
+    body_force(solid: Handle<Solid>, direction: Vector3<f64>) = on_block(solid, BlockLoad::BodyForce(direction.normalize()));
     /// A motor: a torque about the axis of a revolute joint, or a force along that of a prismatic one, from the parent on the child.
-    pub fn motor(joint: Handle<Joint>) -> Self {
-        Self::on(LoadPlace::Joint(joint.index()))
-    }
-
+    motor(joint: Handle<Joint>) = load(LoadPlace::Joint(joint.index()));
     /// The charge of a lumped muscle, in place of a voltage.
-    pub fn charge_of(muscle: Handle<Muscle>) -> Self {
-        Self::on(LoadPlace::Muscle(muscle.index()))
-    }
+    charge_of(muscle: Handle<Muscle>) = load(LoadPlace::Muscle(muscle.index()));
+}
+
+fn load(on: LoadPlace) -> Load {
+    let name = String::new();
+    Load { name, on }
+}
+
+fn at_point(body: Handle<Body>, at: Vector3<f64>, direction: Vector3<f64>, follows: bool) -> Load {
+    load(LoadPlace::Point {
+        at: attachment(body, at),
+        direction: direction.normalize(),
+        follows,
+    })
+}
+
+fn on_block(solid: Handle<Solid>, load: BlockLoad) -> Load {
+    let block = solid.index();
+    self::load(LoadPlace::Block { block, load })
 }
 
 impl Part for Arc<dyn Component> {
