@@ -1,7 +1,6 @@
 //! Voltages, loads, lengths and joint coordinates as functions of time: as they are written, and their conversion to signals.
 
 use crate::files::columns::Columns;
-use crate::files::json::either::Either;
 use crate::files::json::objects::objects;
 use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::units::quantity::{
@@ -9,7 +8,6 @@ use crate::files::units::quantity::{
 };
 use crate::math::Signal;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
-use serde::{Deserialize, Deserializer, Serialize};
 use std::borrow::Cow;
 
 /// A function of time whose values are of a kind.
@@ -87,17 +85,16 @@ fn linear<'s, M: FollowedInTime>(
     })
 }
 
-/// A constant in its SI unit, or exactly one of `ramp`, `sine`, `table` and `csv`.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
-#[serde(untagged, bound(serialize = "M: FollowedInTime"))]
-pub enum SignalSpec<M: FollowedInTime> {
-    /// Constant.
-    Constant(Quantity<M>),
-    /// A function of time.
-    Function(Box<FunctionSpec<M>>),
-}
-
 objects! {
+    /// A constant in its SI unit, or exactly one of `ramp`, `sine`, `table` and `csv`.
+    #[serde(bound(serialize = "M: FollowedInTime"))]
+    pub either SignalSpec<M: FollowedInTime>(M::EXPECTED) {
+        /// Constant.
+        Constant: Quantity<M>,
+        /// A function of time.
+        Function: Box<FunctionSpec<M>>,
+    }
+
     /// A function of time: exactly one of the four.
     #[serde(bound = "")]
     pub struct FunctionSpec<M: FollowedInTime> {
@@ -180,16 +177,6 @@ impl<M: FollowedInTime> SignalSpec<M> {
 pub trait FollowedInTime: PhysicalQuantity + JsonSchema {
     /// Expected value, for messages.
     const EXPECTED: &'static str;
-}
-
-impl<'de, M: FollowedInTime> Deserialize<'de> for SignalSpec<M> {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        deserializer.deserialize_any(Either {
-            expected: M::EXPECTED,
-            scalar: Self::Constant,
-            object: Self::Function,
-        })
-    }
 }
 
 /// Declares measures that may be functions of time; the schema of a measure is that of a quantity of it.

@@ -67,50 +67,12 @@ impl Recording {
         }
     }
 
-    /// Readings of a coordinate of a joint in rad or mm at times in ms, with their standard deviation; `None`: the residuals tell it.
-    pub fn joint(
-        self,
-        joint: Handle<Joint>,
-        readings: impl IntoIterator<Item = (f64, f64)>,
-        deviation: impl Into<Option<f64>>,
-    ) -> Self {
-        let quantity = Quantity::joint(joint.index(), 0.0);
-        self.measured(vec![(1.0, quantity)], readings, deviation)
-    }
-
-    /// Readings of the place of a marker along a direction in mm at times in ms, with their standard deviation.
-    pub fn marker(
-        self,
-        marker: Handle<Marker>,
-        along: Vector,
-        readings: impl IntoIterator<Item = (f64, f64)>,
-        deviation: impl Into<Option<f64>>,
-    ) -> Self {
-        let marker = marker.index();
-        let along = along.normalize();
-        let part = |axis: usize| (along[axis], Quantity::marker_place(marker, axis));
-        self.measured((0..3).map(part).collect(), readings, deviation)
-    }
-
-    /// Readings of the force in N with which a muscle, a spring or a tendon pulls its ends together.
-    pub fn tension(
-        self,
-        part: impl Into<Tension>,
-        readings: impl IntoIterator<Item = (f64, f64)>,
-        deviation: impl Into<Option<f64>>,
-    ) -> Self {
-        let Tension(quantity) = part.into();
-        self.measured(vec![(1.0, quantity)], readings, deviation)
-    }
-
-    /// Readings of a linear combination of quantities of the model, in its units.
-    pub fn measured(
-        mut self,
+    fn measure(
+        &mut self,
         parts: Vec<(f64, Quantity)>,
         readings: impl IntoIterator<Item = (f64, f64)>,
-        deviation: impl Into<Option<f64>>,
-    ) -> Self {
-        let deviation = deviation.into();
+        deviation: Option<f64>,
+    ) {
         let reading = |(time, value)| Reading {
             time,
             value,
@@ -123,7 +85,6 @@ impl Recording {
             is_deviation_known: deviation.is_some(),
             readings: readings.into_iter().map(reading).collect(),
         });
-        self
     }
 
     fn resolve(&self, system: &System, parameters: &[Parameter]) -> Result<problem::Recording> {
@@ -169,6 +130,24 @@ impl Recording {
 
 builder! {
     impl Recording;
+    /// Readings of a coordinate of a joint in rad or mm at times in ms, with their standard deviation; `None`: the residuals tell it.
+    joint(joint: Handle<Joint>, readings: impl IntoIterator<Item = (f64, f64)>, deviation: impl Into<Option<f64>>) |of| {
+        of.measure(vec![(1.0, Quantity::joint(joint.index(), 0.0))], readings, deviation.into());
+    };
+    /// Readings of the place of a marker along a direction in mm at times in ms, with their standard deviation.
+    marker(marker: Handle<Marker>, along: Vector, readings: impl IntoIterator<Item = (f64, f64)>, deviation: impl Into<Option<f64>>) |of| {
+        let along = along.normalize();
+        let part = |axis: usize| (along[axis], Quantity::marker_place(marker.index(), axis));
+        of.measure((0..3).map(part).collect(), readings, deviation.into());
+    };
+    /// Readings of the force in N with which a muscle, a spring or a tendon pulls its ends together.
+    tension(part: impl Into<Tension>, readings: impl IntoIterator<Item = (f64, f64)>, deviation: impl Into<Option<f64>>) |of| {
+        of.measure(vec![(1.0, part.into().0)], readings, deviation.into());
+    };
+    /// Readings of a linear combination of quantities of the model, in its units.
+    measured(parts: Vec<(f64, Quantity)>, readings: impl IntoIterator<Item = (f64, f64)>, deviation: impl Into<Option<f64>>) |of| {
+        of.measure(parts, readings, deviation.into());
+    };
     /// The size of a load in N, or N mm of a torque: a constant or a [`Signal`].
     load(load: Handle<Load>, size: impl Into<Signal>) |of| of.inputs.push((load.into(), size.into()));
     /// Time in ms of the readings at which the motion begins, 0 where it is not said; readings that begin late need it.

@@ -4,8 +4,8 @@ use crate::feedback::{
     Filter, Forced, Integral, Lasting, Law, LawInput, Measured, Memory, Observer, Point, Reading,
 };
 use crate::files::feedback::record::{
-    Factors, FilterRecord, InputRecord, LastingRecord, LawRecord, Listed, MeasuredRecord,
-    ObserverRecord, PointRecord, ReadingRecord, factor_of, unit_of, unit_of_force, unit_of_input,
+    Factors, FilterRecord, InputRecord, LawRecord, Listed, MeasuredRecord, ObserverRecord,
+    PointRecord, ReadingRecord, factor_of, unit_of, unit_of_force, unit_of_input,
 };
 use crate::files::json::document::Document;
 use crate::files::json::error::{Result, SceneError};
@@ -64,26 +64,13 @@ pub(crate) fn read_law(path: &Path, system: &System) -> Result<Law> {
     let points: Vec<Point> = place.each(&record.intervals, point)?;
     let held = scope.optional("held", &record.held, |at, one| point(one, at))?;
     let markers = markers(&record, points.len() + 1, system);
-    let of_observer = record.observer.as_ref().map(|one| {
+    let observer = scope.optional("observer", &record.observer, |place, one| {
         let factors = [&read[..measured.len() + forces.len()], &acting];
-        let place = scope.key("observer");
-        observer(
-            one,
-            &measured,
-            forces.clone(),
-            points.len(),
-            factors,
-            &place,
-        )
-    });
-    let observer = of_observer.transpose()?;
-    if observer
-        .as_ref()
-        .is_some_and(|one| one.held.is_some() != held.is_some())
-    {
-        let place = scope.key("observer").key("held");
-        return Err(place.wrong("one of two", "a filter where the goal is held"));
-    }
+        let observer = observer(one, &measured, forces, points.len(), factors, place)?;
+        refuse!(if observer.held.is_some() != held.is_some(), place.key("held");
+            found "one of two", expected "a filter where the goal is held");
+        Ok(observer)
+    })?;
     Ok(Law {
         measured,
         inputs,
@@ -198,16 +185,10 @@ fn of_input(record: &InputRecord, place: &At<'_>) -> Result<(LawInput, f64)> {
 fn list(values: &[f64], factors: &[f64], place: &Scope<'_>) -> Result<Vec<f64>> {
     refuse!(if values.len() != factors.len(), place;
         found format!("{} numbers", values.len()), expected factors.len().to_string());
-    if let Some(i) = values.iter().position(|value| !value.is_finite()) {
-        return Err(place
-            .index(i)
-            .wrong(values[i].to_string(), "a finite number"));
-    }
-    Ok(values
-        .iter()
-        .zip(factors)
-        .map(|(value, factor)| value / factor)
-        .collect())
+    let infinite = values.iter().position(|value| !value.is_finite());
+    refuse!(if let Some(i) = infinite, place.index(i); found values[i], expected "a finite number");
+    let all = values.iter().zip(factors);
+    Ok(all.map(|(value, factor)| value / factor).collect())
 }
 
 /// A matrix of finite numbers row by row, with the factors of what it gives and of what it is multiplied by.
@@ -221,10 +202,12 @@ fn matrix(
     let mut out = DMatrix::zeros(of_rows.len(), columns.len());
     for (i, (row, of)) in rows.iter().zip(of_rows).enumerate() {
         let factors: Vec<f64> = columns.iter().map(|column| of / column).collect();
-        let row = list(row, &factors, &place.index(i))?;
-        row.iter()
+        for (j, value) in list(row, &factors, &place.index(i))?
+            .into_iter()
             .enumerate()
-            .for_each(|(j, value)| out[(i, j)] = *value);
+        {
+            out[(i, j)] = value;
+        }
     }
     Ok(out)
 }
@@ -263,20 +246,20 @@ fn observer(
     let of_intervals = place.key("intervals");
     refuse!(if record.intervals.len() != intervals, of_intervals;
         found record.intervals.len(), expected format!("{intervals}, one for each interval"));
-    let lasting = record.lasting.as_ref().map(|one: &LastingRecord| {
-        let place = place.key("lasting").key("by_inputs");
-        Ok::<Lasting, SceneError>(Lasting {
+    let lasting = place.optional("lasting", &record.lasting, |place, one| {
+        let factors = [&state[measured.len()..], acting];
+        Ok(Lasting {
             on: forces,
-            by_inputs: matrix(&one.by_inputs, [&state[measured.len()..], acting], &place)?,
+            by_inputs: matrix(&one.by_inputs, factors, &place.key("by_inputs"))?,
         })
-    });
+    })?;
     let jump = match record.jump.is_empty() {
         true => Vec::new(),
         false => list(&record.jump, &state[..measured.len()], &place.key("jump"))?,
     };
     Ok(Observer {
         jump,
-        lasting: lasting.transpose()?,
+        lasting,
         points: of_intervals.each(&record.intervals, filter)?,
         held: place.optional("held", &record.held, |at, one| filter(one, at))?,
         readings,

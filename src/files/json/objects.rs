@@ -63,19 +63,19 @@ macro_rules! objects {
     };
     (@meant $word:ident) => { Self::$word };
     (@meant $word:ident $meant:ident) => { Self::$meant };
-    (@either [($($written:path)?) $(#[$about:meta])* $name:ident ($expected:expr)] []
+    (@either [($($written:path)?) $(#[$about:meta])* $name:ident $(<$of:ident: $bound:path>)? ($expected:expr)] []
      $(#[$of_scalar:meta])* $scalar:ident: $from_scalar:ty, $(#[$of_object:meta])* $object:ident: $from_object:ty,) => {
         #[derive(Clone, Debug, schemars::JsonSchema $(, $written)?)]
         $(#[$about])*
         #[serde(untagged)]
-        pub enum $name {
+        pub enum $name $(<$of: $bound>)? {
             $(#[$of_scalar])*
             $scalar($from_scalar),
             $(#[$of_object])*
             $object($from_object),
         }
 
-        impl<'de> serde::Deserialize<'de> for $name {
+        impl<'de $(, $of: $bound)?> serde::Deserialize<'de> for $name $(<$of>)? {
             fn deserialize<D: serde::Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 deserializer.deserialize_any($crate::files::json::either::Either::<$from_scalar, $from_object, Self> {
                     expected: $expected,

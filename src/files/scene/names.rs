@@ -16,18 +16,14 @@ pub(crate) fn find_material(
     materials: &[(String, Material)],
     scope: &Scope<'_>,
 ) -> Result<Material> {
-    if let Some((_, material)) = materials.iter().find(|(other, _)| other == name) {
-        return Ok(*material);
-    }
-    let names: Vec<String> = materials.iter().map(|(name, _)| name.clone()).collect();
+    let mut names: Vec<String> = materials.iter().map(|(name, _)| name.clone()).collect();
     let kept = named_materials().map(|(name, _)| name.to_owned());
-    let kept = kept.filter(|name| !names.contains(name));
-    let all: Vec<String> = names.iter().cloned().chain(kept).collect();
-    let expected = format!("the name of a material: one of {}", list(all.iter()));
-    Err(scope.find(name, &all, &expected).map_or_else(
-        |error| error,
-        |_| scope.wrong(format!("{name:?}"), expected),
-    ))
+    let kept: Vec<String> = kept.filter(|name| !names.contains(name)).collect();
+    names.extend(kept);
+    let expected = format!("the name of a material: one of {}", list(names.iter()));
+    let index = scope.find(name, &names, &expected)?;
+    // Those that are named are among the materials of the scene.
+    Ok(materials[index].1)
 }
 
 /// The material of finite elements, whose name stands at `scope`: it says how it resists changes of volume.
