@@ -9,23 +9,17 @@
 //!
 //! where ∂c/∂y is square: instant by instant it has blocks on the diagonal and below it. At rest all instants are one.
 
-use crate::control::numbering::{Column, Row};
-use crate::control::problem::Regime;
+use crate::control::boundary_conditions::BoundaryConditions;
+use crate::control::error::BoundaryError;
+use crate::control::guess::InitialGuess;
+use crate::control::numbering::{Column, Numbering, Row};
+use crate::control::problem::Control;
 use crate::control::transcription::Transcription;
+use crate::dynamics::{DiscreteTrajectory, Start};
+use crate::model::Model;
 use crate::nlp::Nlp;
 use crate::sparse::Direct;
-use nalgebra::DMatrix;
-
-/// Part of a column of a program in the equations of the derivatives.
-#[derive(Clone, Debug)]
-pub enum Argument {
-    /// Unknown of this number.
-    Unknown(usize),
-    /// Coordinate of the start of a motion.
-    Start(usize),
-    /// A function of known numbers: the index of each, and the derivative of the column by it.
-    Known(Vec<(usize, f64)>),
-}
+use nalgebra::{DMatrix, RowDVector};
 
 /// Derivatives of the start of a motion by what is known: coordinates, and momenta.
 #[derive(Clone, Debug)]
@@ -36,22 +30,99 @@ pub struct StartDerivatives {
     pub momenta: DMatrix<f64>,
 }
 
+/// Derivatives of a motion, or of a state of rest, by what is known.
+#[derive(Clone, Debug)]
+pub struct MotionDerivatives {
+    unknowns: Numbering,
+    /// Those of each column of its program.
+    rows: Vec<RowDVector<f64>>,
+    /// Numbers of coordinates, and of what is known.
+    size: [usize; 2],
+}
+
+impl MotionDerivatives {
+    /// Those by `count` known numbers of a motion from a start, or of a state of rest where there is no start. `known` tells which columns of parameters
+    /// and intervals are functions of known numbers. None where the equations are singular, or not as many as the unknowns.
+    ///
+    /// # Errors
+    /// There is no program with a free start.
+    pub fn new(
+        model: &Model,
+        control: &Control,
+        from: Option<(&Start, &StartDerivatives)>,
+        discrete: &DiscreteTrajectory,
+        count: usize,
+        known: impl Fn(&Column) -> Option<Vec<(usize, f64)>>,
+    ) -> Result<Option<Self>, BoundaryError> {
+        let start = match from {
+            Some((start, _)) => start.clone(),
+            None => Start::at_rest(model, discrete.z[0].clone()),
+        };
+        let boundary = BoundaryConditions::without_goal(start, model.coordinate_count());
+        let h = discrete.times[1] - discrete.times[0];
+        let initial = InitialGuess::of_motion(discrete.clone(), h);
+        let mut program = Transcription::of_any(model, &boundary, control, &initial)?;
+        let mut x = program.encode(discrete, h);
+        let function = ImplicitFunction::new(&program, from.map(|(_, by)| by), count, known);
+        Ok(function.and_then(|function| {
+            let solved = function.derivatives(&mut program, &mut x)?;
+            let row = |argument| match argument {
+                Argument::Unknown(unknown) => solved.row(unknown).into_owned(),
+                Argument::Known(by) => by,
+            };
+            Some(Self {
+                rows: function.columns.into_iter().map(row).collect(),
+                unknowns: program.unknowns().clone(),
+                size: [model.coordinate_count(), count],
+            })
+        }))
+    }
+
+    /// Those of all coordinates at instant `k`, a row for each; zero of those that are given.
+    pub fn of_coordinates(&self, k: usize) -> DMatrix<f64> {
+        let [rows, columns] = self.size;
+        let value = |i: usize, j: usize| self.of_coordinate(k, i).map_or(0.0, |by| by[j]);
+        DMatrix::from_fn(rows, columns, value)
+    }
+
+    /// Those of coordinate `i` at instant `k`; none of one that is given.
+    pub fn of_coordinate(&self, k: usize, i: usize) -> Option<&RowDVector<f64>> {
+        Some(&self.rows[self.unknowns.unknown(k, i)?])
+    }
+
+    /// Those of scalar `s` in interval `k`; none of one that is given.
+    pub fn of_scalar(&self, k: usize, s: usize) -> Option<&RowDVector<f64>> {
+        Some(&self.rows[self.unknowns.scalar(k, s)?])
+    }
+}
+
+/// Part of a column of a program in the equations of the derivatives.
+enum Argument {
+    /// Unknown of this number.
+    Unknown(usize),
+    /// A function of what is known, with its derivatives.
+    Known(RowDVector<f64>),
+}
+
 /// The unknowns of a program as a function of what is known.
-#[derive(Debug)]
-pub struct ImplicitFunction {
+struct ImplicitFunction<'a> {
     /// Equation of each row of the program; the start meets its constraints.
     rows: Vec<Option<usize>>,
     /// Part of each column of the program.
-    pub columns: Vec<Argument>,
+    columns: Vec<Argument>,
     size: usize,
+    /// Derivatives of the start; none of a state of rest.
+    start: Option<&'a StartDerivatives>,
+    /// Number of known numbers.
+    count: usize,
 }
 
-impl ImplicitFunction {
-    /// Numbers the equations of a program of one motion with a free start. `known` tells which columns of parameters and intervals are
-    /// functions of known numbers. None where there are not as many equations as unknowns.
-    pub fn new(
+impl<'a> ImplicitFunction<'a> {
+    /// Numbers the equations of a program of one motion with a free start; none where there are not as many equations as unknowns.
+    fn new(
         program: &Transcription<'_>,
-        regime: Regime,
+        start: Option<&'a StartDerivatives>,
+        count: usize,
         known: impl Fn(&Column) -> Option<Vec<(usize, f64)>>,
     ) -> Option<Self> {
         let n = program.model().coordinate_count();
@@ -61,49 +132,53 @@ impl ImplicitFunction {
             size += 1;
             size - 1
         };
-        let mut part = |column: &Column| match (*column, regime) {
-            (Column::Instant { k: 0, i }, Regime::Motion) if i < n => Argument::Start(i),
-            (Column::Instant { i, .. }, Regime::Rest) if i < n => {
+        let mut part = |column: &Column| match (*column, start) {
+            (Column::Instant { k: 0, i }, Some(start)) if i < n => {
+                Argument::Known(start.coordinates.row(i).into_owned())
+            }
+            (Column::Instant { i, .. }, None) if i < n => {
                 Argument::Unknown(*of_rest[i].get_or_insert_with(&mut next))
             }
             _ => match known(column) {
-                Some(slopes) => Argument::Known(slopes),
+                Some(slopes) => {
+                    let mut by = RowDVector::zeros(count);
+                    slopes
+                        .iter()
+                        .for_each(|&(number, slope)| by[number] = slope);
+                    Argument::Known(by)
+                }
                 None => Argument::Unknown(next()),
             },
         };
         let all = program.unknowns();
         let columns = all.columns.iter().map(&mut part).collect();
-        let mut count = 0;
+        let mut equations = 0;
         let row = |row: &Row| {
             let is_met = matches!(*row, Row::Instant { k: 0, i } if i >= n);
             (!is_met).then(|| {
-                count += 1;
-                count - 1
+                equations += 1;
+                equations - 1
             })
         };
         let rows = all.rows.iter().map(row).collect();
-        (count == size).then_some(Self {
+        (equations == size).then_some(Self {
             rows,
             columns,
             size,
+            start,
+            count,
         })
     }
 
-    /// Derivatives of the unknowns, a row for each, by `count` known numbers at a point x of the program.
+    /// Derivatives of the unknowns, a row for each, at a point x of the program.
     ///
     /// At rest, where there is no start, the multipliers of constraints are found first and put into x. None where the equations are singular.
-    pub fn derivatives(
-        &self,
-        program: &mut Transcription<'_>,
-        x: &mut [f64],
-        count: usize,
-        start: Option<&StartDerivatives>,
-    ) -> Option<DMatrix<f64>> {
-        if start.is_none() && program.model().action.map.multipliers > 0 {
-            let (solver, _) = self.factored(program, x, count, start)?;
+    fn derivatives(&self, program: &mut Transcription<'_>, x: &mut [f64]) -> Option<DMatrix<f64>> {
+        if self.start.is_none() && program.model().action.map.multipliers > 0 {
+            let (solver, _) = self.factored(program, x)?;
             self.balance(program, x, solver);
         }
-        let (mut solver, mut right) = self.factored(program, x, count, start)?;
+        let (mut solver, mut right) = self.factored(program, x)?;
         for mut column in right.column_iter_mut() {
             solver.solve(column.as_mut_slice());
         }
@@ -115,9 +190,8 @@ impl ImplicitFunction {
         &self,
         program: &mut Transcription<'_>,
         x: &[f64],
-        count: usize,
-        start: Option<&StartDerivatives>,
     ) -> Option<(Direct, DMatrix<f64>)> {
+        let count = self.count;
         let entries = program.jacobian_structure();
         let mut values = vec![0.0; entries.count()];
         program.jacobian(x, &mut values);
@@ -133,18 +207,12 @@ impl ImplicitFunction {
                     places.push((row, *unknown));
                     left.push(value);
                 }
-                Argument::Start(i) => {
-                    let by = start.map(|start| &start.coordinates);
-                    (0..count)
-                        .for_each(|j| right[(row, j)] -= value * by.map_or(0.0, |by| by[(*i, j)]));
-                }
-                Argument::Known(slopes) => {
-                    let each = slopes.iter();
-                    each.for_each(|&(number, slope)| right[(row, number)] -= value * slope);
+                Argument::Known(by) => {
+                    (0..count).for_each(|j| right[(row, j)] -= value * by[j]);
                 }
             }
         }
-        if let Some(start) = start {
+        if let Some(start) = self.start {
             for (r, row) in program.unknowns().rows.iter().enumerate() {
                 if let (Row::Instant { k: 0, i }, Some(at)) = (*row, self.rows[r]) {
                     let scale = program.row_scale(r);

@@ -35,7 +35,7 @@ pub(crate) use free_parameters::ends_that_read;
 pub use goal::{Orientation, Place};
 pub use guess::{Carried, InitialGuess, guess};
 pub use identification::{Costates, Earlier, EarlierSolution, Solution};
-pub use implicit::{Argument, ImplicitFunction, StartDerivatives};
+pub use implicit::{MotionDerivatives, StartDerivatives};
 pub use limits::{BoundedQuantity, Limits, When};
 pub use numbering::{Column, Numbering, Row, Span};
 pub use objective::Cost;

@@ -7,7 +7,7 @@ use crate::control::problem::{BoundaryState, Identification, Prior, Recording, R
 use crate::control::{StartDerivatives, rest_at};
 use crate::dynamics::{DiscreteTrajectory, Equilibrium, Start, StepError, simulate};
 use crate::identify::error::IdentifyError;
-use crate::identify::readout::{Beginning, Course, Prediction, derivatives};
+use crate::identify::readout::{Course, Prediction, derivatives};
 use crate::identify::setup::{Problem, Setup};
 use crate::math::{cores, has_pool, in_order};
 use crate::model::Constant;
@@ -252,12 +252,8 @@ fn in_motion(
     if discrete.intervals() < intervals {
         return Err(IdentifyError::Stopped);
     }
-    let from = Beginning {
-        start: &start,
-        derivatives: Some(&by_start),
-        unknowns: point.count(),
-    };
-    let by = derivatives(setup, from, &discrete, &setup.inputs.undelayed)?;
+    let (from, voltages) = (Some((&start, &by_start)), &setup.inputs.undelayed);
+    let by = derivatives(setup, from, &discrete, voltages, point.count())?;
     let corners = setup.inputs.corners().into_iter();
     let course = Course {
         model,
@@ -279,7 +275,7 @@ fn start_of(
     if let BoundaryState::RestAtVoltages(voltages, _) = &setup.control.start {
         let by = of_rest(setup, voltages, constants)?.derivatives;
         let mut columns = out.coordinates.columns_mut(0, constants);
-        columns.copy_from(&by.instants[0]);
+        columns.copy_from(&by.of_coordinates(0));
     }
     Ok((start, out))
 }
@@ -293,23 +289,16 @@ fn of_rest<'a>(
     let model = &setup.model;
     let state = rest_at(model, voltages, "rest", 0.0);
     let state = state.map_err(|error| setup.recording.refused(error))?;
-    let start = Start::at_rest(model, state.z.clone());
     let lasting = |intervals: usize| {
         let z = vec![state.z.clone(); intervals + 1];
         DiscreteTrajectory::in_steps(1.0, z, vec![state.scalars.clone(); intervals])
     };
-    let from = Beginning {
-        start: &start,
-        derivatives: None,
-        unknowns: constants,
-    };
     let voltages = Voltages::constant(voltages);
-    let by = derivatives(setup, from, &lasting(1), &voltages)?;
     // What a joint transmits is read between two intervals.
     Ok(Course {
         model,
+        derivatives: derivatives(setup, None, &lasting(1), &voltages, constants)?,
         discrete: lasting(2),
-        derivatives: by.lasting(2),
         corners: Vec::new(),
         is_still: true,
     })

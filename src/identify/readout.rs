@@ -2,11 +2,8 @@
 //!
 //! Exact derivatives of a discrete motion by constants, start coordinates and start momenta.
 
-use crate::control::problem::{Channel, Regime, Voltages};
-use crate::control::{
-    Argument, BoundaryConditions, Column, ImplicitFunction, InitialGuess, StartDerivatives,
-    Transcription, ends_that_read,
-};
+use crate::control::problem::{Channel, Voltages};
+use crate::control::{Column, MotionDerivatives, StartDerivatives, ends_that_read};
 use crate::coordinates::Configuration;
 use crate::dynamics::{DiscreteTrajectory, Start};
 use crate::functional::{Measure, Sample, SumDerivatives};
@@ -21,7 +18,7 @@ use std::ops::Range;
 pub(super) struct Course<'a> {
     pub(super) model: &'a Model,
     pub(super) discrete: DiscreteTrajectory,
-    pub(super) derivatives: CourseDerivatives,
+    pub(super) derivatives: MotionDerivatives,
     /// Times in ms at which inputs have corners or jumps.
     pub(super) corners: Vec<f64>,
     /// True of a state of rest, of which all times are the same.
@@ -188,6 +185,8 @@ impl Course<'_> {
         out: &mut RowDVector<f64>,
     ) {
         let map = &self.model.action.map;
+        // What is still has the derivatives of one interval.
+        let first = if self.is_still { 0 } else { k };
         let part = &mut scratch.part;
         measure.gradient(sample, &mut part.forces, &mut part.rows);
         let mut vectors = measure.vectors();
@@ -197,16 +196,17 @@ impl Course<'_> {
             scratch.rows.fill(0.0);
             let (forces, rows) = (&mut part.forces[side], &mut scratch.rows);
             map.take_back(&vectors, &here[side].columns, forces, 1.0, rows);
-            let by = &self.derivatives.instants[k + side];
-            for (i, force) in scratch.rows[..by.nrows()].iter().enumerate() {
-                if *force != 0.0 {
-                    *out += by.row(i) * *force;
+            for (i, force) in scratch.rows[..map.coordinates].iter().enumerate() {
+                let by = self.derivatives.of_coordinate(first + side, i);
+                if let Some(by) = by.filter(|_| *force != 0.0) {
+                    *out += by * *force;
                 }
             }
         }
-        for (row, &scalar) in self.derivatives.read.iter().enumerate() {
-            if part.rows[scalar] != 0.0 {
-                *out += self.derivatives.intervals[k].row(row) * part.rows[scalar];
+        for (s, slope) in part.rows.iter().enumerate() {
+            let by = self.derivatives.of_scalar(first, s);
+            if let Some(by) = by.filter(|_| *slope != 0.0) {
+                *out += by * *slope;
             }
         }
         part.rows.fill(0.0);
@@ -263,64 +263,29 @@ fn weights(time: f64, [first, h]: [f64; 2], points: Range<usize>) -> (usize, Vec
     (begin, (0..count).map(weight).collect())
 }
 
-/// Derivatives of a motion by unknowns: of the coordinates of each instant, and of scalars that are read in each interval.
-#[derive(Clone, Debug)]
-pub(super) struct CourseDerivatives {
-    pub(super) instants: Vec<DMatrix<f64>>,
-    /// Scalars that are read, in order.
-    pub(super) read: Vec<usize>,
-    pub(super) intervals: Vec<DMatrix<f64>>,
-}
-
-/// Start of a motion of a recording, and the number of unknowns by which it is differentiated.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Beginning<'a> {
-    pub(super) start: &'a Start,
-    /// Derivatives of the start; none of a state of rest, which has no start.
-    pub(super) derivatives: Option<&'a StartDerivatives>,
-    /// Number of unknowns.
-    pub(super) unknowns: usize,
-}
-
-/// Derivatives of a motion by the unknowns; of a state of rest where its beginning has no derivatives.
+/// Derivatives of a motion from a start by the unknowns, of which there are `count`; of a state of rest where there is no start.
 pub(super) fn derivatives(
     setup: &Setup<'_>,
-    from: Beginning<'_>,
+    from: Option<(&Start, &StartDerivatives)>,
     discrete: &DiscreteTrajectory,
     voltages: &Voltages,
-) -> Result<CourseDerivatives, IdentifyError> {
-    let (model, intervals) = (&setup.model, discrete.intervals());
+    count: usize,
+) -> Result<MotionDerivatives, IdentifyError> {
+    let model = &setup.model;
     let h = discrete.times[1] - discrete.times[0];
-    let control = setup.open(voltages.clone(), intervals, h);
-    let count = model.coordinate_count();
-    let boundary = BoundaryConditions::without_goal(from.start.clone(), count);
-    let initial = InitialGuess::of_motion(discrete.clone(), h);
-    let program = Transcription::of_any(model, &boundary, &control, &initial);
-    let mut program = program.map_err(|error| setup.recording.refused(error))?;
-    let regime = match from.derivatives {
-        Some(_) => Regime::Motion,
-        None => Regime::Rest,
-    };
-    let function = ImplicitFunction::new(&program, regime, known(setup, discrete, regime));
-    let function = function.expect("a motion follows from its start");
-    let mut x = program.encode(&initial.discrete, h);
-    let solved = function.derivatives(&mut program, &mut x, from.unknowns, from.derivatives);
-    let Some(solved) = solved else {
-        let singular = "the equations of its derivatives are singular";
-        return Err(setup.recording.refused(singular));
-    };
-    let columns = program.unknowns().columns.iter().copied();
-    let columns = columns.zip(&function.columns);
-    Ok(CourseDerivatives::new(
-        model, columns, &solved, from, intervals,
-    ))
+    let control = setup.open(voltages.clone(), discrete.intervals(), h);
+    let known = known(setup, discrete, from.is_some());
+    let found = MotionDerivatives::new(model, &control, from, discrete, count, known);
+    let found = found.map_err(|error| setup.recording.refused(error))?;
+    let singular = "the equations of its derivatives are singular";
+    found.ok_or_else(|| setup.recording.refused(singular))
 }
 
 /// Tells the columns that are functions of the constants, and their derivatives: constants themselves, and inputs with gains or delays.
 fn known<'a>(
     setup: &'a Setup<'_>,
     discrete: &'a DiscreteTrajectory,
-    regime: Regime,
+    moves: bool,
 ) -> impl Fn(&Column) -> Option<Vec<(usize, f64)>> + 'a {
     let variables = &setup.model.variables;
     let first = variables.range(Role::Parameter).start;
@@ -329,76 +294,10 @@ fn known<'a>(
         Column::Interval { k, s } => {
             let source = variables.of(Time::Interval)[s].source?;
             let times = [discrete.times[k], discrete.times[k + 1]];
-            let interval = (regime == Regime::Motion).then_some(times);
+            let interval = moves.then_some(times);
             let value = discrete.scalars[k][s];
             setup.inputs.slopes(source, value, interval)
         }
         _ => None,
-    }
-}
-
-impl CourseDerivatives {
-    /// Those of all instants and intervals out of the unknowns, by the columns of the program with their parts in its equations.
-    fn new<'c>(
-        model: &Model,
-        columns: impl Iterator<Item = (Column, &'c Argument)>,
-        solved: &DMatrix<f64>,
-        from: Beginning<'_>,
-        intervals: usize,
-    ) -> Self {
-        let (n, count) = (model.coordinate_count(), from.unknowns);
-        let measures = model.action.intervals.measures.iter();
-        let mut read: Vec<usize> = measures.flat_map(|one| one.scalars()).collect();
-        read.sort_unstable();
-        read.dedup();
-        let parameters = model.variables.range(Role::Parameter);
-        // A free parameter is a scalar of all intervals.
-        let by_itself = DMatrix::from_fn(read.len(), count, |row, column| {
-            let is_own = parameters.contains(&read[row]) && read[row] - parameters.start == column;
-            f64::from(u8::from(is_own))
-        });
-        let mut out = Self {
-            instants: vec![DMatrix::zeros(n, count); intervals + 1],
-            intervals: vec![by_itself; intervals],
-            read,
-        };
-        if let Some(by_start) = from.derivatives {
-            out.instants[0].clone_from(&by_start.coordinates);
-        }
-        for (column, meaning) in columns {
-            let unknown = match (column, meaning) {
-                (_, Argument::Unknown(unknown)) => *unknown,
-                (Column::Interval { k, s }, Argument::Known(slopes)) => {
-                    if let Ok(row) = out.read.binary_search(&s) {
-                        let each = slopes.iter();
-                        each.for_each(|&(of, slope)| out.intervals[k][(row, of)] = slope);
-                    }
-                    continue;
-                }
-                _ => continue,
-            };
-            match column {
-                Column::Instant { k, i } if i < n => {
-                    out.instants[k].set_row(i, &solved.row(unknown));
-                }
-                Column::Interval { k, s } => {
-                    if let Ok(row) = out.read.binary_search(&s) {
-                        out.intervals[k].set_row(row, &solved.row(unknown));
-                    }
-                }
-                _ => {}
-            }
-        }
-        out
-    }
-
-    /// The same of a state of rest that lasts over some intervals.
-    pub(super) fn lasting(&self, intervals: usize) -> Self {
-        let last = self.instants.last().expect("one instant or more");
-        Self {
-            instants: vec![last.clone(); intervals + 1],
-            read: self.read.clone(),
-            intervals: vec![self.intervals[0].clone(); intervals],
-        }
     }
 }

@@ -5,13 +5,13 @@
 //! The balances of a motion of one interval that does not move are those of rest, `r(q; p) = 0`: `dq/dp = −(∂r/∂q)⁻¹ ∂r/∂p`.
 
 use crate::control::problem::{
-    BoundaryState, Control, Duration, Objective, Regime, SoughtHold, Varied, VariedOf, WeightOf,
+    BoundaryState, Control, Duration, Objective, SoughtHold, Varied, VariedOf, WeightOf,
 };
 use crate::control::{
-    Argument, BoundaryConditions, BoundedQuantity, Column, ImplicitFunction, InitialGuess, Row,
-    Transcription, When, momentum_slopes, resolve_start,
+    BoundedQuantity, Column, MotionDerivatives, Row, Transcription, When, momentum_slopes,
+    resolve_start,
 };
-use crate::dynamics::{DiscreteTrajectory, Start};
+use crate::dynamics::DiscreteTrajectory;
 use crate::math::Signal;
 use crate::model::{Model, Role, What};
 use crate::nlp::Nlp;
@@ -330,15 +330,25 @@ fn rest_derivatives(
     let Opened { model, control, .. } = opened;
     let AtRest { state, voltages } = rest;
     let control = still(control, voltages, sources);
-    let n = model.coordinate_count();
-    let start = Start::at_rest(model, state.z.clone());
-    let boundary = BoundaryConditions::without_goal(start, n);
     let (z, scalars) = (vec![state.z.clone(); 2], vec![state.scalars.clone()]);
-    let initial = InitialGuess::of_motion(DiscreteTrajectory::in_steps(1.0, z, scalars), 1.0);
-    let program = Transcription::of_any(model, &boundary, &control, &initial);
-    let program = program.map_err(NoSensitivity::refused)?;
+    let discrete = DiscreteTrajectory::in_steps(1.0, z, scalars);
+    let variables = &model.variables;
+    let (parameters, inputs) = (variables.range(Role::Parameter), variables.sources_range());
+    let known = |column: &Column| match *column {
+        Column::Parameter { s } => Some(vec![(s - parameters.start, 1.0)]),
+        Column::Interval { s, .. } if inputs.contains(&s) => {
+            let source = column.of(variables).source;
+            let place = sources.iter().position(|one| Some(*one) == source);
+            let place = place.expect("a source that is open");
+            Some(vec![(parameters.len() + place, 1.0)])
+        }
+        _ => None,
+    };
+    let count = parameters.len() + sources.len();
+    let found = MotionDerivatives::new(model, &control, None, &discrete, count, known);
+    let found = found.map_err(NoSensitivity::refused)?;
     let singular = || NoSensitivity::refused("a state of rest has no derivative");
-    solved(program, &initial, sources).ok_or_else(singular)
+    Ok(found.ok_or_else(singular)?.of_coordinates(0))
 }
 
 /// The problem of a motion of one interval of 1 ms under given inputs, but those of some sources.
@@ -359,39 +369,4 @@ fn still(control: &Control, voltages: &[f64], sources: &[usize]) -> Control {
         waypoints: Vec::new(),
         ..control.clone()
     }
-}
-
-fn solved(
-    mut program: Transcription<'_>,
-    initial: &InitialGuess,
-    sources: &[usize],
-) -> Option<DMatrix<f64>> {
-    let n = program.model().coordinate_count();
-    let variables = &program.model().variables;
-    let parameters = variables.range(Role::Parameter);
-    let inputs = variables.sources_range();
-    let known = |column: &Column| match *column {
-        Column::Parameter { s } => Some(vec![(s - parameters.start, 1.0)]),
-        Column::Interval { s, .. } if inputs.contains(&s) => {
-            let source = column.of(variables).source;
-            let place = sources.iter().position(|one| Some(*one) == source);
-            let place = place.expect("a source that is open");
-            Some(vec![(parameters.len() + place, 1.0)])
-        }
-        _ => None,
-    };
-    let function = ImplicitFunction::new(&program, Regime::Rest, known)?;
-    let count = parameters.len() + sources.len();
-    let mut x = program.encode(&initial.discrete, initial.h);
-    let solved = function.derivatives(&mut program, &mut x, count, None)?;
-    let mut out = DMatrix::zeros(n, count);
-    let columns = program.unknowns().columns.iter().zip(&function.columns);
-    for (column, argument) in columns {
-        if let (Column::Instant { k: 0, i }, &Argument::Unknown(unknown)) = (*column, argument)
-            && i < n
-        {
-            out.set_row(i, &solved.row(unknown));
-        }
-    }
-    Some(out)
 }
