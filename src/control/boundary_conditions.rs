@@ -21,7 +21,7 @@ use crate::model::{
 use std::collections::BTreeMap;
 
 /// A control problem's model with its start and goal.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct BoundaryConditions {
     /// Start of the motion.
     pub start: Start,

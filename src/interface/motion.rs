@@ -148,7 +148,7 @@ impl Optimum {
             is_solved: verdict.is_solved,
             motion: Motion {
                 exchange: result.exchange,
-                model: Arc::new(optimum.model),
+                model: optimum.model,
                 discrete: Arc::new(result.discrete),
                 trajectory: result.trajectory,
                 remarks: result.remarks.0,

@@ -1,7 +1,7 @@
 //! A control problem solved from one start: boundary, guess, program, solver.
 
 use crate::control::problem::{Control, ControlTask, Duration, MotionTask};
-use crate::control::{BoundaryConditions, Carried, Solution, Transcription};
+use crate::control::{BoundaryConditions, Carried, Transcription};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
 use crate::ipopt::{OptionValue, Options, Solver, SolverResult};
 use crate::model::{Coordinates, Model};
@@ -12,18 +12,17 @@ use crate::workflow::accuracy::Accuracy;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::hold_check;
 use crate::workflow::motion::{Iterate, solved};
-use crate::workflow::optimum::{
-    Active, Optimum, Shortest, SolveLimits, Violation, WholeProgram, active, violations,
-};
+use crate::workflow::optimum::{Optimum, Shortest, SolveLimits, WholeProgram, active, violations};
 use crate::workflow::program::{
-    Counted, PreparedTogether, ProgramMotion, multipliers_of, prepare_together, program_motions,
-    resolve_each, with_found,
+    Prepared, multipliers_of, prepare_together, program_motions, resolve_each, with_found,
 };
 use crate::workflow::remark::phase;
 use crate::workflow::resimulate::resimulate;
 use crate::workflow::solves::{Solves, bound};
 use std::collections::BTreeMap;
+use std::mem;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Maximum number of rows named when a problem has no solution.
@@ -90,13 +89,12 @@ pub(crate) fn attempt(
     let resolved = resolve_each(task).map_err(stop::unless_stopped)?;
     phase("building the program");
     let motions = program_motions(task, &resolved);
-    let PreparedTogether {
+    let Prepared {
         program,
-        shared,
         point,
         start,
         carried,
-    } = prepare_together(&motions, task, Counted::Yes).map_err(stop::unless_stopped)?;
+    } = prepare_together(&motions, task).map_err(stop::unless_stopped)?;
     let setup = began.elapsed().as_secs_f64();
     let first = motions[0];
     let options = Options {
@@ -107,8 +105,7 @@ pub(crate) fn attempt(
     tracing::info!(?start, variables = point.x.len(), "solve");
     let mut solves = Solves {
         motions: &motions,
-        shared: &shared,
-        combined: task.combined,
+        task,
         solver: Solver::new(program, options.clone()),
         options,
         observer,
@@ -125,21 +122,20 @@ pub(crate) fn attempt(
         ..WholeProgram::new(&program, &solution, gap.left)
     };
     let places = program.places().clone();
-    let ends = motions.iter().zip(program.into_parts()).enumerate();
-    let ends = ends.map(|(number, (motion, mut part))| {
+    let each = task.motions.iter().zip(&resolved);
+    let each = each.zip(program.into_parts()).zip(carried).enumerate();
+    let optima = each.map(|(number, (((one, resolved), mut part), carried))| {
         let own = part_of(&places, number, &solution, &mut part);
-        End::new(motion, &mut part, own)
+        let optimum = Optimum::new(one, resolved, part, own);
+        let optimum = optimum.map_err(|error| error.of_motion(one.name))?;
+        Ok(Optimum {
+            setup,
+            carried,
+            cut_short,
+            ..optimum
+        })
     });
-    let ends: Vec<End> = ends.collect();
-    let all = task.motions.iter().zip(resolved).zip(ends).zip(carried);
-    let optima = all.map(|(((one, resolved), end), carried)| {
-        let optimum = end.optimum(one, resolved, setup, carried);
-        optimum.map_err(|error| error.of_motion(one.name))
-    });
-    let mut optima = optima.collect::<Result<Vec<_>, _>>()?;
-    for optimum in &mut optima {
-        optimum.cut_short = cut_short;
-    }
+    let mut optima = optima.collect::<Result<Vec<_>, WorkflowError>>()?;
     // A part of an objective may vanish: the gap of the whole counts.
     if let [only] = &mut optima[..] {
         (only.program.gap, only.program.wide) = (whole.gap, whole.wide.clone());
@@ -152,87 +148,58 @@ pub(crate) fn attempt(
     })
 }
 
-/// The end of the last solve for one motion.
-struct End {
-    /// Its part of the result.
-    solution: SolverResult,
-    /// The motion in unknowns, and as it is kept: a solution, or an iterate with its barrier parameter.
-    discrete: DiscreteTrajectory,
-    motion: Solution,
-    violated: Vec<Violation>,
-    active: Vec<Active>,
-    infeasibility: f64,
-    program: WholeProgram,
-}
-
-impl End {
+impl Optimum {
+    /// The end of a solve for one motion with its verification; parameters that were found are put in.
     fn new(
-        of: &ProgramMotion<'_>,
-        program: &mut Transcription<'_>,
+        task: &MotionTask<'_>,
+        resolved: &(Arc<Model>, BoundaryConditions),
+        mut program: Transcription<'_>,
         solution: SolverResult,
-    ) -> Self {
-        let (model, x) = (of.model, &solution.x);
+    ) -> Result<Self, WorkflowError> {
+        let MotionTask {
+            system, control, ..
+        } = *task;
+        let (mut model, mut boundary) = resolved.clone();
+        let x = &solution.x;
         let discrete = program.decode(x);
-        let motion = solved(model, &discrete, Some(program.costates(&solution.costates)));
+        let costates = program.costates(&solution.costates);
+        let mut motion = solved(&model, &discrete, Some(costates));
+        motion.hold = boundary.rest[1].clone().or(motion.hold);
         let is_solved = solution.status.is_solved();
         let (violated, active) = match is_solved {
             true => (Vec::new(), Vec::new()),
             false => {
-                let violated = violations(program, x, HOLDS, NAMED);
-                (violated, active(program, x, model, of.task.control))
+                let last = solution.iterations.last();
+                motion.barrier = last.map(|last| last.mu);
+                let violated = violations(&mut program, x, HOLDS, NAMED);
+                (violated, active(&mut program, x, &model, control))
             }
         };
-        let last = solution.iterations.last().filter(|_| !is_solved);
-        let gap = bound(program, &solution);
-        Self {
-            motion: Solution {
-                hold: of.boundary.rest[1].clone().or(motion.hold.clone()),
-                barrier: last.map(|last| last.mu),
-                ..motion
-            },
-            infeasibility: program.violation(x),
-            program: WholeProgram::new(program, &solution, gap),
-            solution,
-            discrete,
-            violated,
-            active,
-        }
-    }
-
-    /// The motion with its verification; parameters that were found are put in.
-    fn optimum(
-        self,
-        task: &MotionTask<'_>,
-        resolved: (Model, BoundaryConditions),
-        setup: f64,
-        carried: Carried,
-    ) -> Result<Optimum, WorkflowError> {
-        let MotionTask {
-            system, control, ..
-        } = *task;
-        let mut motion = self.motion;
-        let (mut model, mut boundary) = resolved;
+        let gap = bound(&mut program, &solution);
+        let infeasibility = program.violation(x);
+        let whole = WholeProgram::new(&program, &solution, gap);
+        drop(program);
         let mut sought = None;
         if !control.parameters.is_empty() {
-            let found = with_found(system, control, &model, &motion)?;
-            sought = Some(model);
-            (model, boundary) = found;
+            let (found, ends) = with_found(system, control, &model, &motion)?;
+            sought = Some(mem::replace(&mut model, Arc::new(found)));
+            boundary = ends;
             // Places of joints may be sought.
             let poses = motion.z.iter().map(|z| model.action.map.placed(z));
             motion.poses = poses.map(|instant| model.poses(&instant)).collect();
         }
-        let mut out = Optimum {
+        let mut out = Self {
             model,
             sought,
             boundary,
             motion,
-            solution: self.solution,
+            solution,
             reversed: None,
-            violated: self.violated,
-            infeasibility: self.infeasibility,
-            program: self.program,
-            setup,
-            carried,
+            violated,
+            infeasibility,
+            program: whole,
+            setup: 0.0,
+            carried: Carried::default(),
             resimulation: None,
             tested: 0.0,
             restarted: None,
@@ -240,20 +207,18 @@ impl End {
             half_period: None,
             stopped: None,
             cut_short: None,
-            active: self.active,
+            active,
             afterwards: None,
             repeated: None,
             refined: None,
             not_found: None,
         };
-        if out.solution.status.is_solved() {
-            out.verify(control, &self.discrete);
+        if is_solved {
+            out.verify(control, &discrete);
         }
         Ok(out)
     }
-}
 
-impl Optimum {
     /// Completes start and goal by what was found with the motion, and verifies it from there: muscles that turn around within an interval, and,
     /// where none does, a simulation under its voltages.
     fn verify(&mut self, control: &Control, discrete: &DiscreteTrajectory) {

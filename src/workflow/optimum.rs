@@ -13,6 +13,7 @@ use crate::workflow::reasons::Cause;
 use crate::workflow::resimulate::Resimulation;
 use serde::Serialize;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Limits of a solve, in place of those of its problem.
@@ -117,9 +118,9 @@ impl WholeProgram {
 #[derive(Debug)]
 pub struct Optimum {
     /// The model, with the parameters that were found put in.
-    pub model: Model,
+    pub model: Arc<Model>,
     /// The model of the program, where it has free parameters.
-    pub sought: Option<Model>,
+    pub sought: Option<Arc<Model>>,
     /// Start and goal.
     pub boundary: BoundaryConditions,
     /// The motion: the optimal one, or the last iterate.

@@ -2,8 +2,8 @@
 
 use crate::control::problem::{Combined, Control, ControlTask, Guess, MotionTask, QuantityCost};
 use crate::control::{
-    BoundaryConditions, BoundaryError, Carried, Column, PEAK_VOLTAGE, RestProgram, Solution,
-    Transcription, guess, rest_programs,
+    BoundaryConditions, Carried, Column, PEAK_VOLTAGE, RestProgram, Solution, Transcription, guess,
+    rest_programs,
 };
 use crate::ipopt::{Start, StartingPoint};
 use crate::model::{Model, Parameter, System, What, with_parameters};
@@ -11,15 +11,15 @@ use crate::nlp::joined::{Joined, Places, SharedVariable};
 use crate::nlp::{Multipliers, Nlp};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::{hold_check, memory};
+use std::sync::Arc;
 
-/// The program of motions with the point to start from.
-pub(crate) struct PreparedTogether<'m> {
-    pub(crate) program: Joined<Transcription<'m>>,
-    pub(crate) shared: Vec<SharedVariable>,
+/// The program of a motion, or of several, with the point to start from and what that point is worth.
+pub(crate) struct Prepared<P, C> {
+    pub(crate) program: P,
     pub(crate) point: StartingPoint,
     pub(crate) start: Start,
-    /// Changes of the earlier solution of each motion.
-    pub(crate) carried: Vec<Carried>,
+    /// Changes of the earlier solution, or of that of each motion.
+    pub(crate) carried: C,
 }
 
 /// Model and boundary of each motion.
@@ -28,10 +28,11 @@ pub(crate) struct PreparedTogether<'m> {
 /// Start or goal of one of them is wrong.
 pub(crate) fn resolve_each(
     task: &ControlTask<'_>,
-) -> Result<Vec<(Model, BoundaryConditions)>, WorkflowError> {
+) -> Result<Vec<(Arc<Model>, BoundaryConditions)>, WorkflowError> {
     let each = task.motions.iter().map(|one| {
         let resolved = resolve(one.system, one.control);
-        resolved.map_err(|error| error.of_motion(one.name))
+        let (model, boundary) = resolved.map_err(|error| error.of_motion(one.name))?;
+        Ok((Arc::new(model), boundary))
     });
     each.collect()
 }
@@ -39,7 +40,7 @@ pub(crate) fn resolve_each(
 /// The motions with their models and boundaries.
 pub(crate) fn program_motions<'m>(
     task: &ControlTask<'m>,
-    resolved: &'m [(Model, BoundaryConditions)],
+    resolved: &'m [(Arc<Model>, BoundaryConditions)],
 ) -> Vec<ProgramMotion<'m>> {
     let each = task.motions.iter().zip(resolved);
     let each = each.map(|(one, (model, boundary))| ProgramMotion {
@@ -57,34 +58,32 @@ pub(crate) fn program_motions<'m>(
 pub(crate) fn prepare_together<'m>(
     motions: &[ProgramMotion<'m>],
     task: &ControlTask<'_>,
-    counted: Counted,
-) -> Result<PreparedTogether<'m>, WorkflowError> {
-    let prepared = motions.iter().map(|motion| {
+) -> Result<Prepared<Joined<Transcription<'m>>, Vec<Carried>>, WorkflowError> {
+    let (mut parts, mut starts, mut carried) = (Vec::new(), Vec::new(), Vec::new());
+    for motion in motions {
         let MotionTask {
-            control, earlier, ..
+            name,
+            control,
+            earlier,
+            ..
         } = motion.task;
-        let prepared = prepare(motion.model, motion.boundary, control, earlier, counted);
-        prepared.map_err(|error| error.of_motion(motion.task.name))
-    });
-    let prepared = prepared.collect::<Result<Vec<_>, _>>()?;
-    let starts: Vec<Start> = prepared.iter().map(|one| one.start).collect();
-    let carried = prepared.iter().map(|one| one.carried).collect();
-    let parts = motions.iter().zip(prepared);
-    let parts = parts.map(|(motion, one)| ProgramPart {
-        name: motion.task.name.to_owned(),
-        program: one.program,
-        point: one.point,
-    });
-    let parts: Vec<ProgramPart<'m>> = parts.collect();
-    let rest = states_of_rest(motions, &parts)
-        .map_err(|error| WorkflowError::boundary("control", &error))?;
-    let shared = shared_variables(&parts, &rest, task.shared_inputs)?;
-    let (program, point) = joined(parts, rest, &shared, task.combined);
-    Ok(PreparedTogether {
+        let one = prepare(
+            motion.model,
+            motion.boundary,
+            control,
+            earlier,
+            Counted::Yes,
+        );
+        let one = one.map_err(|error| error.of_motion(name))?;
+        parts.push((one.program, one.point));
+        starts.push(one.start);
+        carried.push(one.carried);
+    }
+    let (program, point) = joined(motions, parts, task)?;
+    Ok(Prepared {
+        program,
         point,
         start: common(&starts),
-        program,
-        shared,
         carried,
     })
 }
@@ -99,7 +98,7 @@ pub(crate) fn with_joined<R>(
 ) -> Result<R, WorkflowError> {
     let resolved = resolve_each(task)?;
     let motions = program_motions(task, &resolved);
-    let mut prepared = prepare_together(&motions, task, Counted::Yes)?;
+    let mut prepared = prepare_together(&motions, task)?;
     Ok(read(&mut prepared.program, &prepared.point.x))
 }
 
@@ -132,15 +131,6 @@ pub(super) const RESAMPLED: Start = Start::Primal { mu_init: 1e-2 };
 /// violate them by 1e-6 to 1e-4, those that jump at other instants by 4e-4 to 4e-2.
 const FITS: f64 = 2e-4;
 
-/// The program of a control problem with the point to start from and what that point is worth.
-pub(crate) struct Prepared<'m> {
-    pub(crate) program: Transcription<'m>,
-    pub(crate) point: StartingPoint,
-    pub(crate) start: Start,
-    /// Changes of the earlier solution.
-    pub(crate) carried: Carried,
-}
-
 /// Treatment of a program with more equations than unknowns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Counted {
@@ -157,7 +147,7 @@ pub(crate) fn prepare<'m>(
     control: &Control,
     earlier: Option<&Solution>,
     counted: Counted,
-) -> Result<Prepared<'m>, WorkflowError> {
+) -> Result<Prepared<Transcription<'m>, Carried>, WorkflowError> {
     memory::of_program(model, control.intervals)?;
     let named = match (&control.guess, earlier) {
         (Guess::Solution(earlier), None) => {
@@ -212,27 +202,6 @@ pub(crate) struct ProgramMotion<'m> {
     pub(crate) boundary: &'m BoundaryConditions,
 }
 
-/// The states of rest that are unknowns beside programs of motions, each with the number of its motion.
-///
-/// # Errors
-/// It is time to stop.
-pub(super) fn states_of_rest<'m>(
-    motions: &[ProgramMotion<'m>],
-    parts: &[ProgramPart<'m>],
-) -> Result<Vec<(usize, RestProgram<'m>)>, BoundaryError> {
-    let mut all = Vec::new();
-    for (number, (motion, part)) in motions.iter().zip(parts).enumerate() {
-        let ProgramMotion {
-            task,
-            model,
-            boundary,
-        } = *motion;
-        let own = rest_programs(&part.program, model, boundary, task.control)?;
-        all.extend(own.into_iter().map(|one| (number, one)));
-    }
-    Ok(all)
-}
-
 /// The multipliers of the program of a motion.
 pub(super) fn multipliers_of(places: &Places, number: usize, whole: &Multipliers) -> Multipliers {
     Multipliers {
@@ -242,44 +211,43 @@ pub(super) fn multipliers_of(places: &Places, number: usize, whole: &Multipliers
     }
 }
 
-/// The program of a motion, or of a state of rest of one, with its point.
-pub(super) struct ProgramPart<'m> {
-    pub(super) name: String,
-    pub(super) program: Transcription<'m>,
-    pub(super) point: StartingPoint,
-}
-
-/// Programs of motions and of their states of rest as one, and the point of all of them.
+/// The programs of motions with their points, and of their states of rest, as one.
+///
+/// # Errors
+/// It is time to stop, or something cannot be shared.
 pub(super) fn joined<'m>(
-    mut parts: Vec<ProgramPart<'m>>,
-    rest: Vec<(usize, RestProgram<'m>)>,
-    shared: &[SharedVariable],
-    combined: Combined,
-) -> (Joined<Transcription<'m>>, StartingPoint) {
-    let motions = parts.len();
-    for (number, one) in rest {
-        let name = &parts[number].name;
-        let of = if name.is_empty() { "" } else { ": " };
-        parts.push(ProgramPart {
-            name: format!("{name}{of}state of rest at the {}", one.end),
-            program: one.program,
-            point: one.point,
-        });
+    motions: &[ProgramMotion<'m>],
+    parts: Vec<(Transcription<'m>, StartingPoint)>,
+    task: &ControlTask<'_>,
+) -> Result<(Joined<Transcription<'m>>, StartingPoint), WorkflowError> {
+    let mut rest = Vec::new();
+    for (number, (motion, (program, _))) in motions.iter().zip(&parts).enumerate() {
+        let own = rest_programs(program, motion.model, motion.boundary, motion.task.control);
+        let own = own.map_err(|error| WorkflowError::boundary("control", &error))?;
+        rest.extend(own.into_iter().map(|one| (number, one)));
     }
+    let shared = shared_variables(&parts, &rest, task.shared_inputs)?;
     let (mut programs, mut points) = (Vec::new(), Vec::new());
-    for part in parts {
-        programs.push((part.name, part.program));
-        points.push(part.point);
+    for (motion, (program, point)) in motions.iter().zip(parts) {
+        programs.push((motion.task.name.to_owned(), program));
+        points.push(point);
     }
-    let program = Joined::new(programs, shared).with_objectives_of(motions);
-    let mut program = match combined {
+    for (number, one) in rest {
+        let name = motions[number].task.name;
+        let of = if name.is_empty() { "" } else { ": " };
+        let name = format!("{name}{of}state of rest at the {}", one.end);
+        programs.push((name, one.program));
+        points.push(one.point);
+    }
+    let program = Joined::new(programs, &shared).with_objectives_of(motions.len());
+    let mut program = match task.combined {
         Combined::Sum => program,
         Combined::Worst => program.with_worst(),
     };
     let mut point = joined_point(program.places(), &points);
     let StartingPoint { x, costates } = &mut point;
     program.complete(x, costates.as_mut().map(|all| &mut all.constraints));
-    (program, point)
+    Ok((program, point))
 }
 
 /// The point of several programs as one; with multipliers where all of them have some.
@@ -311,11 +279,11 @@ fn joined_point(places: &Places, points: &[StartingPoint]) -> StartingPoint {
 /// # Errors
 /// A constant is not sought alike in all motions, or an input not at the same instants.
 fn shared_variables(
-    parts: &[ProgramPart<'_>],
+    parts: &[(Transcription<'_>, StartingPoint)],
     rest: &[(usize, RestProgram<'_>)],
     inputs: &[String],
 ) -> Result<Vec<SharedVariable>, WorkflowError> {
-    let of_motions = parts.iter().map(|part| &part.program);
+    let of_motions = parts.iter().map(|(program, _)| program);
     let of_rest = rest.iter().map(|(_, one)| &one.program);
     let programs: Vec<&Transcription<'_>> = of_motions.chain(of_rest).collect();
     let [first, _, ..] = programs[..] else {

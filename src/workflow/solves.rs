@@ -14,19 +14,17 @@
 //! parameter falls by ten or more: f is linear in it near the end, so that what is left is less than what the second one gained. Where rounding
 //! ends a solve at a search direction that is too small, that direction bounds the change of each variable in place of its scale.
 
-use crate::control::problem::Combined;
+use crate::control::problem::ControlTask;
 use crate::control::{BoundaryError, InitialGuess, Solution, Transcription};
 use crate::dynamics::DiscreteTrajectory;
 use crate::ipopt::{Iteration, Options, Reached, Solver, SolverResult, Start, StartingPoint};
 use crate::model::Model;
-use crate::nlp::joined::{Joined, SharedVariable};
+use crate::nlp::joined::Joined;
 use crate::nlp::{Bounds, Multipliers, Nlp, Status, slopes};
 use crate::stop;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, solved};
-use crate::workflow::program::{
-    ProgramMotion, ProgramPart, joined, multipliers_of, states_of_rest,
-};
+use crate::workflow::program::{ProgramMotion, joined, multipliers_of};
 use crate::workflow::remark::phase;
 use std::ops::ControlFlow;
 
@@ -37,8 +35,7 @@ const CONFIRMING: usize = 8;
 /// The program of one or several motions in a solver.
 pub(super) struct Solves<'a, 'm> {
     pub(super) motions: &'m [ProgramMotion<'m>],
-    pub(super) shared: &'a [SharedVariable],
-    pub(super) combined: Combined,
+    pub(super) task: &'a ControlTask<'a>,
     /// Options of the first solve.
     pub(super) options: Options,
     /// Function that sees every iterate.
@@ -98,24 +95,20 @@ impl Solves<'_, '_> {
             let parts = each.map(|(motion, initial)| {
                 let (model, boundary, task) = (motion.model, motion.boundary, motion.task);
                 let program = Transcription::of_any(model, boundary, task.control, initial)?;
-                Ok::<_, BoundaryError>(ProgramPart {
-                    name: task.name.to_owned(),
-                    point: program.start(initial),
-                    program,
-                })
+                let point = program.start(initial);
+                Ok::<_, BoundaryError>((program, point))
             });
             // What cannot be built in the time that is left leaves the solution as it is.
             let Ok(parts) = parts.collect::<Result<Vec<_>, _>>() else {
                 break;
             };
-            let Ok(rest) = states_of_rest(self.motions, &parts) else {
+            let Ok((program, point)) = joined(self.motions, parts, self.task) else {
                 break;
             };
             let options = Options {
                 start: Start::PRIMAL,
                 ..self.options.clone()
             };
-            let (program, point) = joined(parts, rest, self.shared, self.combined);
             self.solver = Solver::new(program, options);
             solution = self.solve(&point)?;
         }
@@ -264,15 +257,16 @@ impl Gap {
     /// The gap of the solution of a program to a tolerance.
     pub(crate) fn new(program: &mut impl Nlp, solution: &SolverResult, tolerance: f64) -> Self {
         let scale = program.objective_scale();
-        let zero = ZERO / scale;
+        let last = solution.iterations.last();
+        let violation = program.constraints().violation(&solution.constraints);
         Self {
             left: bound(program, solution),
-            is_minimum: is_minimum(solution),
-            is_feasible: is_feasible(program, solution, tolerance),
+            is_minimum: last.is_none_or(|last| last.regularization <= 0.0),
+            is_feasible: violation <= tolerance,
             allowed: tolerance,
             objective: solution.objective.abs(),
             part: PART.max(tolerance),
-            zero,
+            zero: ZERO / scale,
             scale,
             tolerance,
         }
@@ -318,14 +312,12 @@ impl Gap {
             true => (before.objective - solution.objective).abs(),
             false => f64::INFINITY,
         };
+        let own = Self::new(program, solution, self.allowed);
         Self {
-            left: bound(program, solution).min(gained),
-            is_minimum: is_minimum(solution),
-            is_feasible: is_feasible(program, solution, self.allowed),
-            objective: solution.objective.abs(),
+            left: own.left.min(gained),
             scale,
             tolerance: options.tolerance,
-            ..*self
+            ..own
         }
     }
 
@@ -355,18 +347,6 @@ impl Gap {
             )
         }))
     }
-}
-
-/// Returns true if the last step towards a solution needed no regularisation.
-fn is_minimum(solution: &SolverResult) -> bool {
-    let last = solution.iterations.last();
-    last.is_none_or(|last| last.regularization <= 0.0)
-}
-
-/// Returns true if a point keeps the rows to a tolerance.
-fn is_feasible(program: &impl Nlp, solution: &SolverResult, tolerance: f64) -> bool {
-    let violation = program.constraints().violation(&solution.constraints);
-    violation <= tolerance
 }
 
 /// A bound of what the objective of a solution lies above its least value, to first order.
