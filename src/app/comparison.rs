@@ -6,7 +6,6 @@ use crate::kinematics::Pose;
 use crate::model::Model;
 use crate::model::system::Marker;
 use crate::workflow::accuracy::{Accuracy, GridLevel, greatest};
-use crate::workflow::motion::joint_coordinates;
 use nalgebra::Vector3;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -46,8 +45,13 @@ pub(super) fn earlier(model: &Model, path: &Path) -> Option<Trajectory> {
         let place = |m: &Marker| m.point.place(poses, |body| system.bodies[body].pose());
         system.markers.iter().map(place).collect()
     };
+    let joints = |row: &Vec<f64>| {
+        let named = row.iter().zip(&system.joints);
+        let named = named.filter(|(_, joint)| joint.has_coordinate());
+        named.map(|(&value, _)| value).collect()
+    };
     Some(Trajectory {
-        joints: joint_coordinates(model, &solved),
+        joints: solved.joints.iter().map(joints).collect(),
         marks: solved.poses.iter().map(marks).collect(),
         times: solved.times,
         poses: solved.poses,

@@ -4,7 +4,6 @@ use crate::control::{Costates, Solution};
 use crate::dynamics::trajectory::{Trajectory, by_source};
 use crate::dynamics::{DiscreteTrajectory, last_momentum};
 use crate::ipopt::Iteration;
-use crate::math::Vector;
 use crate::model::system::{Joint, JointKind};
 use crate::model::{FoundParameter, Model, Role};
 use serde::Serialize;
@@ -78,36 +77,7 @@ pub(crate) fn parameters(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Fo
 
 /// The motion as tables and figures show it.
 pub fn trajectory(model: &Model, solved: &Solution) -> Trajectory {
-    Trajectory {
-        times: solved.times.clone(),
-        joints: joint_coordinates(model, solved),
-        poses: solved.poses.clone(),
-        marks: marks(model, &solved.z),
-        voltages: solved.voltages.clone(),
-        ends: Vec::new(),
-        charges: model.circuit_charges(&solved.z),
-    }
-}
-
-/// Coordinates of the joints that have one, per instant.
-pub(crate) fn joint_coordinates(model: &Model, solved: &Solution) -> Vec<Vec<f64>> {
-    let shown = |row: &Vec<f64>| {
-        let joints = row.iter().zip(&model.system.joints);
-        let joints = joints.filter(|(_, joint)| joint.has_coordinate());
-        joints.map(|(&value, _)| value).collect()
-    };
-    solved.joints.iter().map(shown).collect()
-}
-
-/// Places of the markers at instants with coordinates z.
-fn marks(model: &Model, z: &[Vec<f64>]) -> Vec<Vec<Vector>> {
-    let mut instant = model.action.map.instant();
-    let mut at = |z: &Vec<f64>| {
-        instant.z.copy_from_slice(z);
-        model.action.map.vectors(&mut instant);
-        model.markers.iter().map(|&v| instant.x[v]).collect()
-    };
-    z.iter().map(&mut at).collect()
+    Trajectory::from_discrete(model, &discrete_trajectory(model, solved))
 }
 
 /// Potentials of a motion by interval; none where a scene has none.
