@@ -130,19 +130,18 @@ pub fn refine<R>(
         })
     };
     let (first, level) = timed(1, None)?;
-    let mut grids = Grids::new(first, level, wanted, assumed);
-    while grids.accuracy.stopped.is_none() {
+    let mut grids = Grids::new(first, level, assumed);
+    while grids.stopped.is_none() {
         let finer = 2 * grids.times;
-        let reason = stop().map(str::to_owned).or_else(|| grids.limit(finer));
-        grids.accuracy.stopped = reason;
-        if grids.accuracy.stopped.is_some() {
+        grids.stopped = stop().map(str::to_owned).or_else(|| grids.limit(finer));
+        if grids.stopped.is_some() {
             break;
         }
         match timed(finer, Some(&grids.kept.run)) {
-            Err(error) => grids.accuracy.stopped = Some(error.to_string()),
+            Err(error) => grids.stopped = Some(error.to_string()),
             Ok((fine, level)) if !fine.is_complete => {
-                grids.accuracy.stopped = Some(fine.status.to_owned());
-                grids.accuracy.levels.push(level);
+                grids.stopped = Some(fine.status.to_owned());
+                grids.levels.push(level);
             }
             Ok((fine, level)) => {
                 let is_last = match wanted {
@@ -155,7 +154,7 @@ pub fn refine<R>(
             }
         }
     }
-    Ok(grids.finish())
+    Ok(grids.finish(wanted))
 }
 
 /// The grids of a refinement so far.
@@ -167,34 +166,30 @@ struct Grids<R> {
     own: Option<Attempt<R>>,
     /// Iterations on the grids up to the one that is kept.
     iterations: usize,
+    levels: Vec<GridLevel>,
     convergence: Convergence,
-    /// The error of the grid that is kept, as far as it is known.
-    accuracy: Accuracy,
+    assumed: f64,
+    estimate: Measures,
+    is_confirmed: bool,
+    /// Reason why there is no finer grid.
+    stopped: Option<String>,
 }
 
 impl<R> Grids<R> {
     /// The first grid.
-    fn new(first: Attempt<R>, level: GridLevel, wanted: AccuracyTarget, assumed: f64) -> Self {
+    fn new(first: Attempt<R>, level: GridLevel, assumed: f64) -> Self {
         let mut convergence = Convergence::default();
         convergence.add(None, &first.sample);
         Self {
             times: 1,
             own: None,
             iterations: first.iterations,
+            levels: vec![level],
             convergence,
-            accuracy: Accuracy {
-                requested: match wanted {
-                    AccuracyTarget::Below(value) => Some(value),
-                    AccuracyTarget::Estimate => None,
-                },
-                is_met: None,
-                estimate: Measures::new(),
-                is_confirmed: false,
-                order: Measures::new(),
-                assumed_order: assumed,
-                levels: vec![level],
-                stopped: (!first.is_complete).then(|| first.status.to_owned()),
-            },
+            assumed,
+            estimate: Measures::new(),
+            is_confirmed: false,
+            stopped: (!first.is_complete).then(|| first.status.to_owned()),
             kept: first,
         }
     }
@@ -207,70 +202,68 @@ impl<R> Grids<R> {
 
     /// Estimates the errors of a finer grid.
     fn estimate(&mut self, fine: &Attempt<R>) {
-        let Self {
-            convergence,
-            accuracy,
-            ..
-        } = self;
-        convergence.add(Some(&self.kept.sample), &fine.sample);
-        accuracy.is_confirmed = convergence.is_confirmed();
-        accuracy.estimate = convergence.errors(accuracy.assumed_order);
+        self.convergence.add(Some(&self.kept.sample), &fine.sample);
+        self.is_confirmed = self.convergence.is_confirmed();
+        self.estimate = self.convergence.errors(self.assumed);
     }
 
     /// Estimates the error of the first grid by a finer one. Returns true if that was the last grid.
     fn compare(&mut self, fine: Attempt<R>, level: GridLevel) -> bool {
         self.estimate(&fine);
-        let Accuracy {
-            estimate, levels, ..
-        } = &mut self.accuracy;
         // The first grid is as far from the finest one, and that from the limit.
         let first = self.own.as_ref().unwrap_or(&self.kept);
-        *estimate = first.sample.errors_from(&fine.sample, estimate);
-        levels[0].estimate.clone_from(estimate);
-        levels.push(level);
+        self.estimate = first.sample.errors_from(&fine.sample, &self.estimate);
+        self.levels[0].estimate.clone_from(&self.estimate);
+        self.levels.push(level);
         self.times *= 2;
         let coarse = std::mem::replace(&mut self.kept, fine);
         self.own.get_or_insert(coarse);
-        self.accuracy.is_confirmed || self.times >= ESTIMATED
+        self.is_confirmed || self.times >= ESTIMATED
     }
 
     /// Keeps a finer grid in place of the one before. Returns true if its error is below the one requested.
     fn replace(&mut self, fine: Attempt<R>, mut level: GridLevel, requested: f64) -> bool {
         self.estimate(&fine);
-        level.estimate.clone_from(&self.accuracy.estimate);
-        self.accuracy.levels.push(level);
+        level.estimate.clone_from(&self.estimate);
+        self.levels.push(level);
         self.iterations += fine.iterations;
         self.times *= 2;
         self.kept = fine;
-        self.accuracy.is_below(requested)
+        is_below(&self.estimate, requested) && self.is_confirmed
     }
 
     /// The run that is kept, with the error of its grid.
-    fn finish(self) -> Refined<R> {
+    fn finish(self, wanted: AccuracyTarget) -> Refined<R> {
         let (kept, times) = match self.own {
             Some(own) => (own, 1),
             None => (self.kept, self.times),
         };
-        let requested = self.accuracy.requested;
+        let requested = match wanted {
+            AccuracyTarget::Below(value) => Some(value),
+            AccuracyTarget::Estimate => None,
+        };
+        let is_below = |value| self.is_confirmed && is_below(&self.estimate, value);
         Refined {
             run: kept.run,
             times,
             iterations: self.iterations,
             accuracy: Accuracy {
-                is_met: requested.map(|value| self.accuracy.is_below(value)),
+                requested,
+                is_met: requested.map(is_below),
+                is_confirmed: self.is_confirmed,
                 order: self.convergence.orders(),
-                ..self.accuracy
+                assumed_order: self.assumed,
+                estimate: self.estimate,
+                levels: self.levels,
+                stopped: self.stopped,
             },
         }
     }
 }
 
-impl Accuracy {
-    /// Returns true if there is a confirmed estimate, all of it below a value.
-    fn is_below(&self, value: f64) -> bool {
-        let greatest = greatest(&self.estimate);
-        self.is_confirmed && greatest.is_some_and(|(_, error)| error <= value)
-    }
+/// Returns true if there is an estimate, all of it below a value.
+fn is_below(estimate: &Measures, value: f64) -> bool {
+    greatest(estimate).is_some_and(|(_, error)| error <= value)
 }
 
 impl GridLevel {
