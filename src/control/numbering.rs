@@ -247,7 +247,7 @@ impl Numbering {
     }
 
     /// Number of a column, unless its value is given.
-    pub(in crate::control) fn number(&self, column: Column) -> Option<usize> {
+    pub fn number(&self, column: Column) -> Option<usize> {
         match column {
             Column::Instant { k, i } => self.unknown(k, i),
             Column::Interval { k, s } => self.scalar(k, s),

@@ -17,7 +17,7 @@ use crate::model::{Model, Role, What};
 use crate::nlp::Nlp;
 use crate::sensitivity::conditions::{Direction, NoSensitivity, Side};
 use crate::sensitivity::kernel::Kernel;
-use crate::sensitivity::with_parameters::{AtRest, Opened};
+use crate::sensitivity::with_parameters::{AtRest, Mapped, Opened};
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
@@ -28,8 +28,8 @@ const BESIDE: f64 = 1e-9;
 pub(super) struct Directions<'a> {
     opened: &'a Opened,
     program: &'a Transcription<'a>,
-    /// True for each column that the solved program lacks.
-    is_new: &'a [bool],
+    /// Columns of the solved program.
+    solved: &'a Mapped,
     /// The start as the problem gives it.
     start: &'a BoundaryState,
     /// Derivatives of the states of rest at start and goal by parameters of the model, then by sources.
@@ -44,8 +44,7 @@ impl<'a> Directions<'a> {
     pub(super) fn new(
         opened: &'a Opened,
         kernel: &'a Kernel<Transcription<'a>>,
-        is_new: &'a [bool],
-        squares: &[usize],
+        solved: &'a Mapped,
         start: &'a BoundaryState,
     ) -> Result<Self, NoSensitivity> {
         let sources = [0, 1].map(|end| {
@@ -66,10 +65,10 @@ impl<'a> Directions<'a> {
         };
         Ok(Self {
             rests: [of(0)?, of(1)?],
-            weights: of_weights(opened, squares, &kernel.point())?,
+            weights: of_weights(opened, &solved.squares, &kernel.point())?,
             program: kernel.program(),
             opened,
-            is_new,
+            solved,
             start,
             sources,
         })
@@ -129,15 +128,10 @@ impl<'a> Directions<'a> {
 
     /// Columns of coordinates of the start or the goal that are held.
     fn of_end(&self, end: usize) -> impl Iterator<Item = (usize, usize)> + '_ {
-        let at = [0, self.program.intervals()][end];
-        let n = self.model().coordinate_count();
-        let columns = self.program.unknowns().columns.iter().enumerate();
-        columns.filter_map(move |(number, column)| match *column {
-            Column::Instant { k, i } if k == at && i < n && self.is_new[number] => {
-                Some((number, i))
-            }
-            _ => None,
-        })
+        let (at, unknowns) = ([0, self.program.intervals()][end], self.program.unknowns());
+        let all = 0..self.model().coordinate_count();
+        let columns = all.filter_map(move |i| Some((unknowns.unknown(at, i)?, i)));
+        columns.filter(move |&(column, _)| self.solved.is_new[column])
     }
 
     fn of_constants(&self, varied: &Varied) -> Direction {
@@ -145,9 +139,7 @@ impl<'a> Directions<'a> {
         let place = parameters.iter().position(|one| one.name == varied.name);
         let place = place.expect("a parameter of the model");
         let s = self.model().variables.range(Role::Parameter).nth(place);
-        let columns = &self.program.unknowns().columns;
-        let is_own = |one: &Column| matches!(*one, Column::Parameter { s: own } if Some(own) == s);
-        let own = columns.iter().position(is_own);
+        let own = s.and_then(|s| self.program.unknowns().scalar(0, s));
         let own = own.into_iter().map(|column| (column, 1.0));
         let ends = (0..2).flat_map(|end| self.by_rest(end, place));
         self.of_held(own.chain(ends).collect::<Vec<_>>())
@@ -234,13 +226,10 @@ impl<'a> Directions<'a> {
         let mut start = start.map_err(NoSensitivity::refused)?;
         let slopes = momentum_slopes(self.model(), &unit, &mut start);
         slopes.map_err(|_| NoSensitivity::refused("momenta are no straight line in a mass"))?;
-        let rows = self.program.unknowns().rows.iter().enumerate();
-        let rows = rows.filter_map(|(row, of)| match *of {
-            Row::Instant { k: 0, i } => {
-                let momentum = start.momentum.get(i).copied()?;
-                Some((row, self.program.row_scale(row) * momentum))
-            }
-            _ => None,
+        let momenta = start.momentum.iter().enumerate();
+        let rows = momenta.filter_map(|(i, momentum)| {
+            let row = self.program.unknowns().row(0, i)?;
+            Some((row, self.program.row_scale(row) * momentum))
         });
         Ok(Direction {
             constraints: rows.collect(),

@@ -13,7 +13,7 @@ use crate::nlp::{Multipliers, Nlp};
 use crate::sensitivity::conditions::{
     Conditions, Direction, EXACT, Held, NoSensitivity, Place, Places, Saddle, Side, WEAK, largest,
 };
-use crate::sensitivity::margins::{Changes, Margin, Of, Range};
+use crate::sensitivity::margins::{Margin, Of, Range};
 
 /// Most steps of Newton's method to the optimum.
 const STEPS: usize = 6;
@@ -142,13 +142,8 @@ impl<N: Nlp> Kernel<N> {
     fn margins(&self) -> Vec<Margin> {
         let Conditions { columns, rows, .. } = &self.conditions;
         let [columns, rows] = [columns, rows].map(|list| vec![0.0; list.len()]);
-        self.conditions.margins(Changes {
-            x: &columns,
-            y: &rows,
-            slopes: &columns,
-            constraints: &rows,
-            direction: &Direction::default(),
-        })
+        let none = [&columns[..], &rows[..]];
+        self.conditions.margins(none, none, &Direction::default())
     }
 
     /// Checks that bounds push the right way and are kept.
@@ -258,13 +253,9 @@ impl<N: Nlp> Kernel<N> {
         let along = [envelope, dot(gradient, &dx)];
         let rounding = EXACT * gradient.iter().map(|value| value.abs()).sum::<f64>() * largest(&dx);
         let objective = self.objective(direction, along, [sizes(gradient, &dx), rounding])?;
-        let margins = self.conditions.margins(Changes {
-            x: &dx,
-            y: &dy,
-            slopes: &slopes,
-            constraints: &values,
-            direction,
-        });
+        let margins = self
+            .conditions
+            .margins([&dx, &dy], [&slopes, &values], direction);
         let words = |of| self.conditions.words(of);
         let range = Range::new(&margins, words);
         let weak = Range::ends_at_once(&margins, WEAK).map(words).collect();

@@ -19,18 +19,6 @@ pub(super) enum Of {
     Constraint(usize, Option<Side>),
 }
 
-/// Derivatives along a direction.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Changes<'a> {
-    /// Of the unknowns and of the multipliers of constraints.
-    pub(super) x: &'a [f64],
-    pub(super) y: &'a [f64],
-    /// Of the slopes and of the constraints, while both stay.
-    pub(super) slopes: &'a [f64],
-    pub(super) constraints: &'a [f64],
-    pub(super) direction: &'a Direction,
-}
-
 const SIDES: [(Side, f64); 2] = [(Side::Lower, 1.0), (Side::Upper, -1.0)];
 
 /// A variable or a constraint with its multiplier, and their derivatives along a direction.
@@ -73,14 +61,20 @@ impl Placed {
 }
 
 impl<N: Nlp> Conditions<N> {
-    /// All margins of an optimum with their derivatives.
-    pub(super) fn margins(&self, changes: Changes<'_>) -> Vec<Margin> {
+    /// All margins of an optimum with their derivatives along a direction, by those of the unknowns and of the multipliers of constraints, and by those
+    /// of the slopes and of the constraints while both stay.
+    pub(super) fn margins(
+        &self,
+        [x, y]: [&[f64]; 2],
+        [slopes, constraints]: [&[f64]; 2],
+        direction: &Direction,
+    ) -> Vec<Margin> {
         let mut margins = Vec::new();
-        let mut slopes = changes.slopes.to_vec();
-        self.add_curved(changes.x, &mut slopes);
-        self.add_transposed(changes.y, &mut slopes);
+        let mut slopes = slopes.to_vec();
+        self.add_curved(x, &mut slopes);
+        self.add_transposed(y, &mut slopes);
         let mut moved = [vec![0.0; self.columns.len()], vec![0.0; self.columns.len()]];
-        for &(i, side, value) in &changes.direction.bounds {
+        for &(i, side, value) in &direction.bounds {
             let given = side.of(self.program().variables())[i];
             moved[side as usize][i] += self.squares.rate(i, given) * value;
         }
@@ -88,23 +82,23 @@ impl<N: Nlp> Conditions<N> {
             let variable = Placed {
                 place,
                 value: self.x[i],
-                rate: changes.x[i],
+                rate: x[i],
                 multiplier: -self.slopes[i],
                 of_multiplier: -slopes[i],
             };
             let bounds = |side: Side| [side.of(&self.bounds)[i], moved[side as usize][i]];
             variable.add(bounds, |side| Of::Variable(i, side), &mut margins);
         }
-        let mut constraints = changes.constraints.to_vec();
-        self.add_times(changes.x, &mut constraints);
-        let given = &changes.direction.constraint_bounds;
+        let mut constraints = constraints.to_vec();
+        self.add_times(x, &mut constraints);
+        let given = &direction.constraint_bounds;
         for (i, &place) in self.rows.iter().enumerate() {
             let constraint = Placed {
                 place,
                 value: self.g[i],
                 rate: constraints[i],
                 multiplier: self.y[i],
-                of_multiplier: changes.y[i],
+                of_multiplier: y[i],
             };
             let bounds = |side: Side| [side.of(&self.row_bounds)[i], moved_by(given, i, side)];
             constraint.add(bounds, |side| Of::Constraint(i, side), &mut margins);

@@ -7,13 +7,13 @@
 //! by each number tells whether its derivatives hold to one side alone: then each number takes one too.
 
 use crate::control::problem::{BoundaryState, Control, OutcomeOf, Varied, VariedOf};
-use crate::control::{Column, Solution, Transcription};
-use crate::model::{Role, System, Time};
-use crate::sensitivity::conditions::{Conditions, Direction, NoSensitivity, Places};
+use crate::control::{Solution, Transcription};
+use crate::model::{Role, System};
+use crate::sensitivity::conditions::{Direction, NoSensitivity};
 use crate::sensitivity::directions::Directions;
 use crate::sensitivity::kernel::{Derivative, Kernel, Outcome};
 use crate::sensitivity::margins::{PartSlopes, Range};
-use crate::sensitivity::with_parameters::{Mapped, Opened};
+use crate::sensitivity::with_parameters::Opened;
 use nalgebra::Vector3;
 use std::mem;
 
@@ -85,25 +85,14 @@ struct Differentiated<'a> {
 impl<'a> Differentiated<'a> {
     /// That of a problem with a start.
     fn new(opened: &'a Opened, start: &BoundaryState) -> Result<Self, NoSensitivity> {
-        let program = opened.program()?;
-        let Mapped {
-            x,
-            multipliers,
-            places,
-            is_new,
-            squares,
-            rows,
-        } = opened.map(&program)?;
-        let (of_squares, places) = (Some(&squares[..]), Places::Known(places));
-        let conditions = Conditions::new(program, &x, &multipliers, of_squares, places);
-        let kernel = Kernel::of(conditions)?;
-        let directions = Directions::new(opened, &kernel, &is_new, &squares, start)?;
+        let (kernel, solved) = opened.kernel()?;
+        let directions = Directions::new(opened, &kernel, &solved, start)?;
         let all = opened.control.varied.iter();
         Ok(Self {
             directions: all.map(|varied| directions.of(varied)).collect(),
             opened,
             kernel,
-            rows,
+            rows: solved.rows,
         })
     }
 
@@ -114,31 +103,23 @@ impl<'a> Differentiated<'a> {
         slopes: &[PartSlopes],
     ) -> Sensitivity {
         let (model, program) = (&self.opened.model, self.kernel.program());
-        let intervals = program.intervals();
-        let mut coordinates = vec![vec![0.0; model.coordinate_count()]; intervals + 1];
-        let mut voltages = vec![vec![0.0; model.sources.len()]; intervals];
-        let (mut parameters, mut duration) = (vec![0.0; self.opened.sought], 0.0);
-        let first = model.variables.range(Role::Parameter).start;
-        let columns = program.unknowns().columns.iter().zip(&derivative.variables);
-        for (number, (column, change)) in columns.enumerate() {
-            let value = change * program.column_scale(number);
-            match *column {
-                Column::Instant { k, i } if k <= intervals && i < model.coordinate_count() => {
-                    coordinates[k][i] = value;
-                }
-                Column::Interval { k, s } if k < intervals => {
-                    if let Some(source) = model.variables.of(Time::Interval)[s].source {
-                        voltages[k][source] = value;
-                    }
-                }
-                Column::Parameter { s } => {
-                    let sought = parameters.get_mut(s - first);
-                    sought.into_iter().for_each(|sought| *sought = value);
-                }
-                Column::Horizon => duration = value * intervals as f64,
-                _ => {}
-            }
-        }
+        let (unknowns, intervals) = (program.unknowns(), program.intervals());
+        let change = |column: Option<usize>| {
+            let change = column.map(|at| derivative.variables[at] * program.column_scale(at));
+            change.unwrap_or(0.0)
+        };
+        let of_instant = |k: usize| -> Vec<f64> {
+            let all = 0..model.coordinate_count();
+            all.map(|i| change(unknowns.unknown(k, i))).collect()
+        };
+        let coordinates: Vec<Vec<f64>> = (0..=intervals).map(of_instant).collect();
+        let of_interval = |k: usize| -> Vec<f64> {
+            let inputs = (0..model.sources.len()).map(|source| model.variables.input(source));
+            let columns = inputs.map(|input| unknowns.scalar(k, input?));
+            columns.map(change).collect()
+        };
+        let parameters = model.variables.range(Role::Parameter);
+        let parameters = parameters.take(self.opened.sought);
         let of_instants = || slopes.iter().zip(&coordinates);
         let of_joints = of_instants().map(|(slopes, row)| slopes.joints_along(row));
         let of_markers = of_instants().map(|(slopes, row)| slopes.markers_along(row));
@@ -152,9 +133,9 @@ impl<'a> Differentiated<'a> {
             varied: varied.clone(),
             range: derivative.range.while_true(varied.value, has_meaning),
             weak: derivative.weak,
-            duration,
-            parameters,
-            voltages,
+            duration: change(unknowns.horizon()) * intervals as f64,
+            parameters: parameters.map(|s| change(unknowns.scalar(0, s))).collect(),
+            voltages: (0..intervals).map(of_interval).collect(),
             coordinates,
         }
     }
@@ -164,25 +145,29 @@ impl<'a> Differentiated<'a> {
         let (opened, program) = (self.opened, self.kernel.program());
         let model = &opened.model;
         let refused = |what: &str| Err(NoSensitivity::refused(what));
+        let unknowns = program.unknowns();
         let (count, h) = (program.intervals(), opened.initial.h);
         let instant = |time: f64| ((time / h).round() as usize).min(count);
-        let mut out = Outcome::default();
-        let (k, coordinates) = match *of {
+        let slopes = |time: f64| PartSlopes::new(model, &opened.initial.discrete.z[instant(time)]);
+        let along = |time: f64, slopes: &[(usize, f64)]| -> Vec<_> {
+            let slopes = slopes.iter();
+            let of = slopes.map(|&(i, slope)| (unknowns.unknown(instant(time), i), slope));
+            of.collect()
+        };
+        let factors = match *of {
             OutcomeOf::Multiplier(row) => {
                 let Some(&row) = self.rows.get(row) else {
                     return refused("the program has no such equation or limit");
                 };
-                out.multipliers.push((row, program.row_scale(row)));
-                return Ok(out);
+                return Ok(Outcome {
+                    multipliers: vec![(row, program.row_scale(row))],
+                    ..Outcome::default()
+                });
             }
-            OutcomeOf::Joint { joint, time } => {
-                let k = instant(time);
-                let slopes = PartSlopes::new(model, &opened.initial.discrete.z[k]);
-                match slopes.joint(joint) {
-                    Some(slopes) => (k, slopes.to_vec()),
-                    None => return refused("the system has no such joint of one coordinate"),
-                }
-            }
+            OutcomeOf::Joint { joint, time } => match slopes(time).joint(joint) {
+                Some(slopes) => along(time, slopes),
+                None => return refused("the system has no such joint of one coordinate"),
+            },
             OutcomeOf::Marker { marker, axis, time } => {
                 if let Some(place) = opened.control.varied.iter().find(|one| is_place(one)) {
                     let Varied { name, .. } = place;
@@ -191,38 +176,26 @@ impl<'a> Differentiated<'a> {
                 if marker >= model.markers.len() || axis > 2 {
                     return refused("the system has no such marker");
                 }
-                let k = instant(time);
-                let z = &opened.initial.discrete.z[k];
-                let slopes = PartSlopes::new(model, z);
-                (k, slopes.marker(marker, axis).to_vec())
+                along(time, slopes(time).marker(marker, axis))
             }
-            _ => (0, Vec::new()),
+            OutcomeOf::Duration => vec![(unknowns.horizon(), count as f64)],
+            OutcomeOf::Parameter(place) => {
+                let own = model.variables.range(Role::Parameter).nth(place);
+                vec![(own.and_then(|s| unknowns.scalar(0, s)), 1.0)]
+            }
+            OutcomeOf::Input { source, time } => {
+                let interval = ((time / h + SNAP) as usize).min(count - 1);
+                let input = model.variables.input(source);
+                vec![(input.and_then(|s| unknowns.scalar(interval, s)), 1.0)]
+            }
         };
-        let parameters = model.variables.range(Role::Parameter);
-        let columns = program.unknowns().columns.iter().enumerate();
-        for (number, column) in columns {
-            let factor = match (*column, of) {
-                (Column::Horizon, OutcomeOf::Duration) => program.intervals() as f64,
-                (Column::Parameter { s }, OutcomeOf::Parameter(place)) => {
-                    f64::from(u8::from(parameters.start + place == s))
-                }
-                (Column::Interval { k, s }, OutcomeOf::Input { source, time }) => {
-                    let own = model.variables.of(Time::Interval)[s].source;
-                    let interval = ((time / h + SNAP) as usize).min(count - 1);
-                    f64::from(u8::from(k == interval && own == Some(*source)))
-                }
-                (Column::Instant { k: at, i }, _) if at == k => {
-                    let own = coordinates.iter().find(|(c, _)| *c == i);
-                    own.map_or(0.0, |(_, factor)| *factor)
-                }
-                _ => 0.0,
-            };
-            if factor != 0.0 {
-                let scale = program.column_scale(number);
-                out.variables.push((number, factor * scale));
-            }
-        }
-        Ok(out)
+        let scaled = |(column, factor): (Option<usize>, f64)| {
+            column.map(|column| (column, factor * program.column_scale(column)))
+        };
+        Ok(Outcome {
+            variables: factors.into_iter().filter_map(scaled).collect(),
+            ..Outcome::default()
+        })
     }
 }
 

@@ -10,7 +10,7 @@ use crate::control::{
 use crate::dynamics::Equilibrium;
 use crate::model::{Model, Parameter, Role, System};
 use crate::nlp::{Multipliers, Nlp};
-use crate::sensitivity::conditions::{Held, NoSensitivity, Place};
+use crate::sensitivity::conditions::{Conditions, Held, NoSensitivity, Place, Places};
 use crate::sensitivity::kernel::Kernel;
 
 /// A state of rest with its voltages.
@@ -51,11 +51,6 @@ struct Approached {
 
 /// Columns and rows of the program that was solved among those of the opened one.
 pub(super) struct Mapped {
-    /// The optimum.
-    pub(super) x: Vec<f64>,
-    pub(super) multipliers: Multipliers,
-    /// Places of columns and rows.
-    pub(super) places: [Vec<Place>; 2],
     /// True for each column that the solved program lacks.
     pub(super) is_new: Vec<bool>,
     /// Columns that enter by their squares alone.
@@ -125,39 +120,33 @@ impl Opened {
         })
     }
 
-    /// The program with all columns.
-    pub(super) fn program(&self) -> Result<Transcription<'_>, NoSensitivity> {
+    /// The program with all columns at its optimum, in which the solved one is found.
+    pub(super) fn kernel(&self) -> Result<(Kernel<Transcription<'_>>, Mapped), NoSensitivity> {
         let (model, boundary) = (&self.model, &self.boundary);
         let mut program = Transcription::of_any(model, boundary, &self.control, &self.initial)
             .map_err(NoSensitivity::refused)?;
         if self.sought == 0 {
             program.hold_parameters();
         }
-        Ok(program)
-    }
-
-    /// Finds the solved program in the opened one.
-    pub(super) fn map(&self, program: &Transcription<'_>) -> Result<Mapped, NoSensitivity> {
         let all = program.unknowns();
         let Numbering { columns, rows, .. } = &self.solved.unknowns;
         let Approached {
             columns: values,
-            rows: multipliers,
+            rows: of_rows,
             bounds: [lower, upper],
-            places: [of_columns, of_rows],
+            places,
             squares,
         } = &self.at;
         let counts = [all.columns.len(), all.rows.len()];
-        let mut out = Mapped {
-            x: program.encode(&self.initial.discrete, self.initial.h),
-            multipliers: Multipliers::default(),
-            places: counts.map(|count| vec![Place::Held; count]),
+        let mut of = Mapped {
             is_new: vec![true; counts[0]],
             squares: Vec::new(),
             rows: Vec::new(),
         };
-        out.multipliers.reset(counts[0], counts[1]);
-        let mut places = all.columns.iter().enumerate();
+        let mut x = program.encode(&self.initial.discrete, self.initial.h);
+        let mut multipliers = Multipliers::default();
+        multipliers.reset(counts[0], counts[1]);
+        let mut found = counts.map(|count| vec![Place::Held; count]);
         for (number, column) in columns.iter().enumerate() {
             let column = match *column {
                 Column::Interval { k, s } => {
@@ -166,28 +155,29 @@ impl Opened {
                 }
                 other => other,
             };
-            let place = places.find(|(_, one)| **one == column);
-            let (place, _) = place.ok_or_else(missing)?;
+            let place = all.number(column).ok_or_else(missing)?;
             let scale = program.column_scale(place);
-            out.x[place] = values[number] / scale;
-            out.is_new[place] = false;
-            out.places[0][place] = of_columns[number];
+            x[place] = values[number] / scale;
+            of.is_new[place] = false;
+            found[0][place] = places[0][number];
             if squares.contains(&number) {
-                out.squares.push(place);
+                of.squares.push(place);
             }
-            out.multipliers.lower[place] = lower[number] * scale;
-            out.multipliers.upper[place] = upper[number] * scale;
+            multipliers.lower[place] = lower[number] * scale;
+            multipliers.upper[place] = upper[number] * scale;
         }
-        let mut places = all.rows.iter().enumerate();
+        let mut all_rows = all.rows.iter().enumerate();
         for (number, row) in rows.iter().enumerate() {
-            let is_row = |one: &Row| self.is_same_row(row, one, program);
-            let place = places.find(|(_, one)| is_row(one));
+            let is_row = |one: &Row| self.is_same_row(row, one, &program);
+            let place = all_rows.find(|(_, one)| is_row(one));
             let (place, _) = place.ok_or_else(|| self.unknown_row(row))?;
-            out.places[1][place] = of_rows[number];
-            out.multipliers.constraints[place] = multipliers[number] / program.row_scale(place);
-            out.rows.push(place);
+            found[1][place] = places[1][number];
+            multipliers.constraints[place] = of_rows[number] / program.row_scale(place);
+            of.rows.push(place);
         }
-        Ok(out)
+        let (squares, places) = (Some(&of.squares[..]), Places::Known(found));
+        let conditions = Conditions::new(program, &x, &multipliers, squares, places);
+        Ok((Kernel::of(conditions)?, of))
     }
 
     /// The number here of a scalar of the solved program: parameters stand before potentials.
