@@ -154,12 +154,7 @@ impl SecondStarts<'_, '_> {
 
     /// Takes the optimum of another start, where that finds one; with the iterations of both.
     fn replace(&mut self, control: &Control, earlier: Option<&Solution>, from: &'static str) {
-        let motion = MotionTask {
-            control,
-            earlier,
-            ..self.motion
-        };
-        let Some(mut second) = alone(motion, self.limits(ITERATIONS), self.observer) else {
+        let Some(mut second) = self.again(control, earlier, ITERATIONS, true) else {
             return;
         };
         let before = &mut self.found;
@@ -237,37 +232,39 @@ impl SecondStarts<'_, '_> {
         if self.budget.is_over() {
             return None;
         }
-        let mut go_on = |_: &Iterate<'_>| ControlFlow::Continue(());
+        let found = self.again(control, earlier, iterations, false)?;
+        put_after(&mut self.found.solution, &found.solution);
+        Some(found)
+    }
+
+    /// Solves from another start, or another problem, within a number of iterations, which the observer sees where they are of the problem. `None` if it
+    /// cannot be stated.
+    fn again(
+        &mut self,
+        control: &Control,
+        earlier: Option<&Solution>,
+        iterations: usize,
+        is_seen: bool,
+    ) -> Option<Optimum> {
         let motion = MotionTask {
             control,
             earlier,
             ..self.motion
         };
-        let found = alone(motion, self.limits(iterations), &mut go_on)?;
-        put_after(&mut self.found.solution, &found.solution);
-        Some(found)
-    }
-
-    /// Limits of a solve within a number of iterations.
-    fn limits(&self, iterations: usize) -> SolveLimits {
         let left = self.budget.left_of_limits();
         let most = left.iterations;
         let most = most.unwrap_or(self.motion.control.solver.max_iterations);
-        SolveLimits {
+        let limits = SolveLimits {
             iterations: Some(iterations.min(most)),
             ..left
-        }
+        };
+        let observer = &mut |iterate: &Iterate<'_>| match is_seen {
+            true => (self.observer)(iterate),
+            false => ControlFlow::Continue(()),
+        };
+        let found = attempt(&motion.into(), limits, observer).ok();
+        found.map(|mut found| found.optima.remove(0))
     }
-}
-
-/// Solves for a single motion from one start; none where its problem cannot be stated.
-fn alone(
-    motion: MotionTask<'_>,
-    limits: SolveLimits,
-    observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
-) -> Option<Optimum> {
-    let found = attempt(&motion.into(), limits, observer).ok();
-    found.map(|mut found| found.optima.remove(0))
 }
 
 /// The outcome of a solve with a free duration, and its motion where that is as short as is asked for.
