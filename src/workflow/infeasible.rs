@@ -3,7 +3,6 @@
 use crate::control::problem::{BoundaryState, Control, Duration};
 use crate::control::{BoundaryConditions, Place, Rests};
 use crate::coordinates::Configuration;
-use crate::dynamics::simulate;
 use crate::dynamics::trajectory::Trajectory;
 use crate::kinematics::Pose;
 use crate::math::{no_smaller, significant};
@@ -12,7 +11,7 @@ use crate::model::system::JointKind;
 use crate::model::{Component, Model, System, joint_unit};
 use crate::nlp::Status;
 use crate::workflow::optimum::{Active, Optimum, Shortest};
-use std::ops::ControlFlow;
+use crate::workflow::resimulate::Repeat;
 
 /// Maximum number of bounds listed.
 const TOLD: usize = 6;
@@ -94,20 +93,14 @@ fn miss(control: &Control, optimum: &Optimum) -> Option<String> {
         ..
     } = optimum;
     let n = motion.intervals();
-    let h = motion.times[n] / n as f64;
-    let scalars = |from: f64, _: f64| {
-        let k = ((from / h).round() as usize).min(n - 1);
-        model.scalars(&motion.voltages[k])
-    };
-    let (discrete, failure) = simulate(model, &boundary.start, h, n, scalars, |_| {
-        ControlFlow::Continue(())
-    });
-    if failure.is_some() || discrete.intervals() < n {
+    let again = Repeat::from_solution(model, control, &boundary.start, motion, 1);
+    if again.failure.is_some() {
         return None;
     }
-    let [end, before] = [n, n - 1].map(|k| model.action.map.placed(&discrete.z[k]));
+    let [end, before] = [n, n - 1].map(|k| model.action.map.placed(&again.discrete.z[k]));
     let parts = distances(model, boundary, &control.goal, &end);
     let (what, _) = parts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+    let h = motion.times[n] / n as f64;
     let speed = |v: &usize| (end.x[*v] - before.x[*v]).norm() / h;
     let fastest = model.markers.iter().map(speed).fold(0.0, f64::max);
     let is_slow = fastest < SLOW * model.length() / motion.times[n];
