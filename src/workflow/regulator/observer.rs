@@ -101,23 +101,12 @@ impl Design<'_> {
     pub(super) fn whole(&self, of: &Regulated, motion: &[State]) -> Observer {
         let goal = &self.goal;
         let size = of.law.measured.len();
-        let scales = Scales {
-            state: DVector::from_element(size, 1.0),
-            readings: DVector::zeros(0),
-        };
-        let nothing = Observation {
-            joints: Vec::new(),
-            markers: Vec::new(),
-            inputs: 0.0,
-            rates: 0.0,
-            lasting: None,
-        };
-        let filter = |step: &RegulatedStep, at: [&State; 2], readings: &[f64]| {
-            let scaled = self.scaled_step(&nothing, step, at, &scales);
+        let filter = |step: &RegulatedStep, [at, next]: [&State; 2], readings: &[f64]| {
+            let by_state = step.by_state.view((0, 0), (size, size)) * self.by_rates(at);
             Filter {
                 readings: readings.to_vec(),
-                by_state: scaled.by_state.transpose(),
-                by_inputs: scaled.by_inputs,
+                by_state: self.over_rates(by_state, next),
+                by_inputs: self.over_rates(step.by_inputs.rows(0, size).into_owned(), next),
                 output: DMatrix::identity(size, size),
                 gain: DMatrix::identity(size, size),
             }
@@ -225,6 +214,13 @@ impl Design<'_> {
             .collect()
     }
 
+    /// Derivatives of coordinates and rates at the state after a step, by those of coordinates and momenta.
+    fn over_rates(&self, of_next: DMatrix<f64>, next: &State) -> DMatrix<f64> {
+        let (rows, columns) = of_next.shape();
+        let by = self.by_rates(next).lu().solve(&of_next);
+        by.unwrap_or_else(|| DMatrix::from_element(rows, columns, f64::NAN))
+    }
+
     /// A step over coordinates and rates from one state to the next, scaled.
     fn scaled_step(
         &self,
@@ -234,9 +230,8 @@ impl Design<'_> {
         Scales { state, readings }: &Scales,
     ) -> Scaled {
         let (n, size) = (self.coordinates.len() + self.momenta.len(), state.len());
-        let to_rates = |right: DMatrix<f64>| {
-            let by = self.by_rates(next).lu().solve(&right);
-            let by = by.unwrap_or_else(|| DMatrix::from_element(n, right.ncols(), f64::NAN));
+        let to_rates = |of_next: DMatrix<f64>| {
+            let by = self.over_rates(of_next, next);
             DMatrix::from_fn(n, by.ncols(), |i, j| by[(i, j)] / state[i])
         };
         let of_state = to_rates(step.by_state.view((0, 0), (n, n)) * self.by_rates(at));
