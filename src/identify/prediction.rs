@@ -347,20 +347,14 @@ pub struct Unknowns {
 impl Unknowns {
     /// Constants at their guesses, starts as they are given; `count` tells the number of unknowns of a start.
     pub(super) fn new(task: &Identification, mut count: impl FnMut(&Recording) -> usize) -> Self {
-        let mut values: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
-        let constants = values.len();
-        let starts = task.recordings.iter().map(|recording| {
-            let first = values.len();
-            if !recording.is_held_out {
-                values.resize(first + count(recording), 0.0);
-            }
-            first..values.len()
-        });
-        Self {
-            starts: starts.collect(),
-            constants,
-            values,
-        }
+        let guesses: Vec<f64> = task.parameters.iter().map(|p| p.guess).collect();
+        let of_start = |recording: &Recording| match recording.is_held_out {
+            true => Vec::new(),
+            false => vec![0.0; count(recording)],
+        };
+        let starts: Vec<Vec<f64>> = task.recordings.iter().map(of_start).collect();
+        let starts: Vec<&[f64]> = starts.iter().map(Vec::as_slice).collect();
+        Self::of_values(&guesses, &starts)
     }
 
     /// Values of the constants, and of the unknowns of the start of each recording.
