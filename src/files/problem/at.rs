@@ -5,10 +5,9 @@ use crate::files::json::path::JsonPath;
 use crate::files::json::scope::{Result, Scope, refuse, ways_inside};
 use crate::files::scene::names::names;
 use crate::files::units::quantity::{
-    Angle, AngularVelocity, Charge, ChargeDensity, Force, ForceDensity, Kind, Length,
-    PhysicalQuantity, Quantity, Stress, Torque, Velocity, Voltage,
+    Angle, AngularVelocity, Kind, Length, LoadSize, PhysicalQuantity, Quantity, Velocity, Voltage,
 };
-use crate::model::system::{InputKind, JointKind, Source, System, voltage_sources};
+use crate::model::system::{JointKind, Source, System, voltage_sources};
 use crate::model::{Coordinates, PartKind};
 use std::collections::BTreeMap;
 use std::ops::Deref;
@@ -139,15 +138,11 @@ impl<'a> At<'a> {
 
     /// Kind of the input of a source.
     pub(crate) fn kind_of_source(&self, source: usize) -> Kind {
-        match self.sources[source].kind {
-            InputKind::Voltage => Voltage::kind(),
-            InputKind::Force => Force::kind(),
-            InputKind::Torque => Torque::kind(),
-            InputKind::Traction => Stress::kind(),
-            InputKind::BodyForce => ForceDensity::kind(),
-            InputKind::SurfaceCharge => ChargeDensity::kind(),
-            InputKind::Charge => Charge::kind(),
-        }
+        let (unit, _) = self.sources[source].kind.si();
+        let mut kinds = Voltage::kinds().iter().chain(LoadSize::kinds());
+        let kind = kinds.find(|kind| kind.symbol() == unit);
+        kind.expect("an input has the unit of a voltage or load")
+            .clone()
     }
 
     /// A value of a joint, in the kind that the joint calls for.

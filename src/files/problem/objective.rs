@@ -72,21 +72,11 @@ pub(crate) fn objective(spec: &ObjectiveSpec, at: &At<'_>) -> Result<Objective> 
     let ends: Vec<_> = at.key("final").each(&spec.at_the_end, at_the_end)?;
     let mut quantities = [along, ends].concat().concat();
     quantities.extend(amount_costs([spec.muscle_volume, spec.muscle_mass], at)?);
-    let mut of_sources = Vec::new();
-    for (key, spec, energy) in [
-        (
-            "electrical_energy",
-            &spec.electrical_energy,
-            SourceEnergy::Electrical,
-        ),
-        (
-            "mechanical_work",
-            &spec.mechanical_work,
-            SourceEnergy::Mechanical,
-        ),
-    ] {
-        of_sources.extend(energies(spec, energy, &at.key(key))?);
-    }
+    let (electrical, mechanical) = (&spec.electrical_energy, &spec.mechanical_work);
+    let place = at.key("electrical_energy");
+    let mut of_sources = energies(electrical, SourceEnergy::Electrical, &place)?;
+    let place = at.key("mechanical_work");
+    of_sources.extend(energies(mechanical, SourceEnergy::Mechanical, &place)?);
     let is_any = !quantities.is_empty() || !of_sources.is_empty();
     refuse!(if !is_any && weights.iter().all(|(_, weight)| *weight == 0.0), at;
         found "no weight",

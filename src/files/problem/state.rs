@@ -247,26 +247,22 @@ fn given_key(spec: &RestGoalSpec, at: &Scope<'_>) -> Result<&'static str> {
 
 /// Refuses `hold` and `rest` where they have no meaning next to `key`.
 fn check_companions(spec: &RestGoalSpec, key: &str, at: &Scope<'_>) -> Result<()> {
-    let beside_places = "it beside \"markers\" or \"orientations\" only";
-    let beside_rest = "it beside \"rest_at_voltages\", \"markers\" or \"orientations\" only";
-    let beside_goals = "it beside \"joint_angles\", \"markers\" or \"orientations\"; voltages at rest hold their equilibrium";
     let is_of_angles = spec.joint_angles.is_some();
-    let is_found = matches!(spec.hold, Some(HeldSpec::Word(_)));
-    for (name, is_ignored, expected) in [
-        (
-            "hold",
-            spec.hold.is_some() && !is_of_places(spec) && !(is_found && is_of_angles),
-            if is_found {
-                beside_goals
-            } else {
-                beside_places
-            },
+    let (is_ignored, expected) = match &spec.hold {
+        Some(HeldSpec::Word(_)) => (
+            !is_of_places(spec) && !is_of_angles,
+            "it beside \"joint_angles\", \"markers\" or \"orientations\"; voltages at rest hold their equilibrium",
         ),
-        ("rest", spec.rest.is_some() && is_of_angles, beside_rest),
-    ] {
-        refuse!(if is_ignored, at.key(name);
-            found format!("{name:?} beside {key:?}"), expected expected);
-    }
+        given => (
+            given.is_some() && !is_of_places(spec),
+            "it beside \"markers\" or \"orientations\" only",
+        ),
+    };
+    refuse!(if is_ignored, at.key("hold");
+        found format!("\"hold\" beside {key:?}"), expected expected);
+    refuse!(if spec.rest.is_some() && is_of_angles, at.key("rest");
+        found format!("\"rest\" beside {key:?}"),
+        expected "it beside \"rest_at_voltages\", \"markers\" or \"orientations\" only");
     Ok(())
 }
 
@@ -533,13 +529,9 @@ fn status(file: &Path, at: &Scope<'_>) -> Result<Vec<String>> {
         (false, word) if SOLVED.contains(&word) => Ok(Vec::new()),
         (false, _) => {
             let found = format!("{shown}, whose status is {status:?}");
-            Err(at.wrong(
-                found,
-                format!(
-                    "a motion of the robot: a simulation, or one of {}",
-                    list(SOLVED.iter())
-                ),
-            ))
+            let solved = list(SOLVED.iter());
+            let expected = format!("a motion of the robot: a simulation, or one of {solved}");
+            Err(at.wrong(found, expected))
         }
     }
 }

@@ -63,12 +63,7 @@ pub(crate) struct Carriers<'a> {
 
 /// The load that is written.
 pub(crate) fn load(spec: &LoadSpec, on: &Carriers<'_>, scope: &Scope<'_>) -> Result<Load> {
-    let no_direction = match (&spec.joint, &spec.muscle) {
-        (Some(_), _) => Some("as the axis of the joint is the direction"),
-        (None, Some(_)) => Some("as a charge has no direction"),
-        (None, None) => None,
-    };
-    let checked = spec.check_keys(no_direction, scope);
+    let checked = spec.check_keys(scope);
     let on = the_one!(scope, spec;
         "point" point |at, point| {
             checked?;
@@ -104,18 +99,18 @@ pub(crate) fn load(spec: &LoadSpec, on: &Carriers<'_>, scope: &Scope<'_>) -> Res
 
 impl LoadSpec {
     /// Refuses keys that mean nothing where they stand.
-    fn check_keys(&self, no_direction: Option<&'static str>, scope: &Scope<'_>) -> Result<()> {
+    fn check_keys(&self, scope: &Scope<'_>) -> Result<()> {
         use BlockLoadKind::{BodyForce, Pressure, SurfaceCharge};
-        let turns = no_direction.is_none() && matches!(self.kind, None | Some(Pressure));
-        let no_direction = no_direction.or(match self.kind {
-            Some(Pressure) => Some("as a pressure acts along the normal"),
-            Some(SurfaceCharge) => Some("as a charge has no direction"),
+        let no_direction = match (&self.joint, &self.muscle, self.kind) {
+            (Some(_), ..) => Some("as the axis of the joint is the direction"),
+            (_, Some(_), _) | (.., Some(SurfaceCharge)) => Some("as a charge has no direction"),
+            (.., Some(Pressure)) => Some("as a pressure acts along the normal"),
             _ => None,
-        });
-        let no_kind = self
-            .solid
-            .is_none()
-            .then_some("as only a load of a \"solid\" has it");
+        };
+        let is_plain = self.joint.is_none() && self.muscle.is_none();
+        let turns = is_plain && matches!(self.kind, None | Some(Pressure));
+        let is_of_block = self.solid.is_some();
+        let no_kind = (!is_of_block).then_some("as only a load of a \"solid\" has it");
         let no_face = match self.kind {
             Some(BodyForce) => Some("as a body force acts in the whole block"),
             _ => no_kind,

@@ -226,20 +226,16 @@ impl MeasuredSpec {
     /// The quantity that is written.
     pub(in crate::files::problem) fn recorded(&self, at: &At<'_>) -> Result<Recorded> {
         let (key, name, make) = self.entry(at)?;
-        let directed: &[&str] = &["marker", "reaction_force"];
+        let (along, about) = (self.along.is_some(), self.about.is_some());
         let beside = [
-            ("along", self.along.is_some(), "a direction", directed),
-            (
-                "about",
-                self.about.is_some(),
-                "a direction",
-                &["reaction_torque"],
-            ),
-            ("from", self.from.is_some(), "a plane", &["clearance"]),
+            ("along", along, "a direction", "marker"),
+            ("about", about, "a direction", "reaction_torque"),
+            ("from", self.from.is_some(), "a plane", "clearance"),
         ];
         for (other, is_written, found, of) in beside {
-            refuse!(if is_written && !of.contains(&key), at.key(other);
-                found found, expected format!("{found} of a {:?} alone", of[0]));
+            let is_of_it = key == of || (key == "reaction_force" && other == "along");
+            refuse!(if is_written && !is_of_it, at.key(other);
+                found found, expected format!("{found} of a {of:?} alone"));
         }
         let recorded = make(&Named {
             name,
