@@ -13,7 +13,7 @@ use crate::nlp::Nlp;
 use crate::tasks::{self, CheckResult};
 use crate::workflow::program::with_joined;
 use crate::workflow::receding::{Horizon, RecedingHorizon, Source};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
@@ -90,7 +90,7 @@ pub(super) fn joined<R>(
 /// # Errors
 /// The input is wrong.
 pub fn check(request: &CommandInput) -> Result<CommandOutput, CommandError> {
-    let found = compared(request, None)?;
+    let found = checked(request, None)?;
     Ok(CommandOutput {
         is_solved: found.agrees,
         result: found.message,
@@ -102,43 +102,42 @@ pub fn check(request: &CommandInput) -> Result<CommandOutput, CommandError> {
 ///
 /// # Errors
 /// As of [`check`].
-pub fn checked(
-    request: &CommandInput,
-    text: Option<&str>,
-) -> Result<impl Serialize + use<>, CommandError> {
-    let found = compared(request, text)?;
-    let report = &found.report;
-    let wrong = report.wrong.iter().zip(&found.effects);
-    let wrong = wrong.map(|(entry, effects)| {
-        Entries::default()
-            .with("matrix", format!("{:?}", entry.matrix).to_lowercase())
-            .with("row", &entry.row)
-            .with("column", &entry.column)
-            .with("analytic", entry.analytic)
-            .with("difference", entry.difference)
-            .with("error", entry.error)
-            .with("effects", effects)
-    });
-    let errors = Entries::default()
-        .with("gradient", report.gradient)
-        .with("jacobian", report.jacobian)
-        .with("hessian", report.hessian);
-    Ok(Entries::default()
-        .with("agrees", found.agrees)
-        .with("message", &found.message)
-        .with("errors", errors)
-        .with("checked", report.checked)
-        .with("variables", found.variables)
-        .with("unchecked", &report.unchecked)
-        .with_each("wrong", wrong))
-}
-
-fn compared(request: &CommandInput, text: Option<&str>) -> Result<CheckResult, CommandError> {
+pub fn checked(request: &CommandInput, text: Option<&str>) -> Result<CheckResult, CommandError> {
     let began = Instant::now();
     let loaded = read(&request.input, text, &request.set)?;
     let left = |seconds| seconds - began.elapsed().as_secs_f64();
     tasks::check(&loaded.system, loaded.task, request.max_seconds.map(left))
         .map_err(CommandError::in_file(&request.input))
+}
+
+impl Serialize for CheckResult {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let report = &self.report;
+        let wrong = report.wrong.iter().zip(&self.effects);
+        let wrong = wrong.map(|(entry, effects)| {
+            Entries::default()
+                .with("matrix", format!("{:?}", entry.matrix).to_lowercase())
+                .with("row", &entry.row)
+                .with("column", &entry.column)
+                .with("analytic", entry.analytic)
+                .with("difference", entry.difference)
+                .with("error", entry.error)
+                .with("effects", effects)
+        });
+        let errors = Entries::default()
+            .with("gradient", report.gradient)
+            .with("jacobian", report.jacobian)
+            .with("hessian", report.hessian);
+        let all = Entries::default()
+            .with("agrees", self.agrees)
+            .with("message", &self.message)
+            .with("errors", errors)
+            .with("checked", report.checked)
+            .with("variables", self.variables)
+            .with("unchecked", &report.unchecked)
+            .with_each("wrong", wrong);
+        all.serialize(serializer)
+    }
 }
 
 /// A horizon of a problem file, with its system.

@@ -84,7 +84,7 @@ fn tables_and_figures(run: &Run<'_>) -> Vec<(&'static str, String)> {
         ..
     } = *run;
     let in_space = &Run {
-        trajectory: &*solids::coloured(system, trajectory, run.observations),
+        trajectory: &solids::coloured(system, trajectory, run.observations),
         ..*run
     };
     let drawn = |plot: Option<LinePlot>| Some(plot?.svg(origin));

@@ -291,8 +291,9 @@ fn a_text_is_inspected_and_its_derivatives_are_compared() {
             .any(|effect| effect.name == "muscle electroelasticity")
     );
     let found = checked(&request, Some(&text("pair"))).unwrap();
-    assert!(found.agrees && found.wrong.is_empty() && found.checked == n && found.variables == n);
-    assert!(found.errors.jacobian > 0.0 && found.errors.hessian < 1e-5);
+    let report = &found.report;
+    assert!(found.agrees && report.wrong.is_empty() && report.checked == n && found.variables == n);
+    assert!(report.jacobian > 0.0 && report.hessian < 1e-5);
 }
 
 #[test]

@@ -52,7 +52,7 @@ pub(super) fn scene(run: &Run<'_>) -> Value {
         "markers": stage.markers(),
         "goal": run.goal.map(|poses| places(poses.iter().flat_map(moved))),
         "ground": {
-            "plate": places(&ground_plate(run.system)),
+            "plate": places(ground_plate(run.system)),
             "faces": places(held_faces(run.system).iter().flatten()),
         },
         "names": [run.name, run.comparison.map_or("", |(name, _)| name)],
