@@ -36,8 +36,6 @@ pub struct MotionDerivatives {
     unknowns: Numbering,
     /// Those of each column of its program.
     rows: Vec<RowDVector<f64>>,
-    /// Numbers of coordinates, and of what is known.
-    size: [usize; 2],
 }
 
 impl MotionDerivatives {
@@ -61,28 +59,9 @@ impl MotionDerivatives {
         let boundary = BoundaryConditions::without_goal(start, model.coordinate_count());
         let h = discrete.times[1] - discrete.times[0];
         let initial = InitialGuess::of_motion(discrete.clone(), h);
-        let mut program = Transcription::of_any(model, &boundary, control, &initial)?;
-        let mut x = program.encode(discrete, h);
-        let function = ImplicitFunction::new(&program, from.map(|(_, by)| by), count, known);
-        Ok(function.and_then(|function| {
-            let solved = function.derivatives(&mut program, &mut x)?;
-            let row = |argument| match argument {
-                Argument::Unknown(unknown) => solved.row(unknown).into_owned(),
-                Argument::Known(by) => by,
-            };
-            Some(Self {
-                rows: function.columns.into_iter().map(row).collect(),
-                unknowns: program.unknowns().clone(),
-                size: [model.coordinate_count(), count],
-            })
-        }))
-    }
-
-    /// Those of all coordinates at instant `k`, a row for each; zero of those that are given.
-    pub fn of_coordinates(&self, k: usize) -> DMatrix<f64> {
-        let [rows, columns] = self.size;
-        let value = |i: usize, j: usize| self.of_coordinate(k, i).map_or(0.0, |by| by[j]);
-        DMatrix::from_fn(rows, columns, value)
+        let program = Transcription::of_any(model, &boundary, control, &initial)?;
+        let equations = Equations::new(program, from.map(|(_, by)| by), count, known);
+        Ok(equations.and_then(|equations| equations.solved(discrete, h)))
     }
 
     /// Those of coordinate `i` at instant `k`; none of one that is given.
@@ -104,8 +83,9 @@ enum Argument {
     Known(RowDVector<f64>),
 }
 
-/// The unknowns of a program as a function of what is known.
-struct ImplicitFunction<'a> {
+/// The equations of a program by which its unknowns are functions of what is known.
+struct Equations<'a> {
+    program: Transcription<'a>,
     /// Equation of each row of the program; the start meets its constraints.
     rows: Vec<Option<usize>>,
     /// Part of each column of the program.
@@ -117,51 +97,45 @@ struct ImplicitFunction<'a> {
     count: usize,
 }
 
-impl<'a> ImplicitFunction<'a> {
+impl<'a> Equations<'a> {
     /// Numbers the equations of a program of one motion with a free start; none where there are not as many equations as unknowns.
     fn new(
-        program: &Transcription<'_>,
+        program: Transcription<'a>,
         start: Option<&'a StartDerivatives>,
         count: usize,
         known: impl Fn(&Column) -> Option<Vec<(usize, f64)>>,
     ) -> Option<Self> {
         let n = program.model().coordinate_count();
-        let mut size = 0;
-        let mut of_rest = vec![None; n];
-        let mut next = || {
-            size += 1;
-            size - 1
+        let (mut size, mut equations) = (0, 0);
+        let next = |number: &mut usize| {
+            *number += 1;
+            *number - 1
         };
-        let mut part = |column: &Column| match (*column, start) {
+        let mut of_rest = vec![None; n];
+        let part = |column: &Column| match (*column, start) {
             (Column::Instant { k: 0, i }, Some(start)) if i < n => {
                 Argument::Known(start.coordinates.row(i).into_owned())
             }
             (Column::Instant { i, .. }, None) if i < n => {
-                Argument::Unknown(*of_rest[i].get_or_insert_with(&mut next))
+                Argument::Unknown(*of_rest[i].get_or_insert_with(|| next(&mut size)))
             }
             _ => match known(column) {
                 Some(slopes) => {
                     let mut by = RowDVector::zeros(count);
-                    slopes
-                        .iter()
-                        .for_each(|&(number, slope)| by[number] = slope);
+                    (slopes.iter()).for_each(|&(number, slope)| by[number] = slope);
                     Argument::Known(by)
                 }
-                None => Argument::Unknown(next()),
+                None => Argument::Unknown(next(&mut size)),
             },
         };
-        let all = program.unknowns();
-        let columns = all.columns.iter().map(&mut part).collect();
-        let mut equations = 0;
+        let columns = program.unknowns().columns.iter().map(part).collect();
         let row = |row: &Row| {
             let is_met = matches!(*row, Row::Instant { k: 0, i } if i >= n);
-            (!is_met).then(|| {
-                equations += 1;
-                equations - 1
-            })
+            (!is_met).then(|| next(&mut equations))
         };
-        let rows = all.rows.iter().map(row).collect();
+        let rows = program.unknowns().rows.iter().map(row).collect();
         (equations == size).then_some(Self {
+            program,
             rows,
             columns,
             size,
@@ -170,28 +144,32 @@ impl<'a> ImplicitFunction<'a> {
         })
     }
 
-    /// Derivatives of the unknowns, a row for each, at a point x of the program.
+    /// The derivatives along a motion in steps of h ms.
     ///
-    /// At rest, where there is no start, the multipliers of constraints are found first and put into x. None where the equations are singular.
-    fn derivatives(&self, program: &mut Transcription<'_>, x: &mut [f64]) -> Option<DMatrix<f64>> {
-        if self.start.is_none() && program.model().action.map.multipliers > 0 {
-            let (solver, _) = self.factored(program, x)?;
-            self.balance(program, x, solver);
+    /// At rest, where there is no start, the multipliers of constraints are found first. None where the equations are singular.
+    fn solved(mut self, discrete: &DiscreteTrajectory, h: f64) -> Option<MotionDerivatives> {
+        let mut x = self.program.encode(discrete, h);
+        if self.start.is_none() && self.program.model().action.map.multipliers > 0 {
+            let (solver, _) = self.factored(&x)?;
+            self.balance(&mut x, solver);
         }
-        let (mut solver, mut right) = self.factored(program, x)?;
+        let (mut solver, mut right) = self.factored(&x)?;
         for mut column in right.column_iter_mut() {
             solver.solve(column.as_mut_slice());
         }
-        Some(right)
+        let row = |argument| match argument {
+            Argument::Unknown(unknown) => right.row(unknown).into_owned(),
+            Argument::Known(by) => by,
+        };
+        Some(MotionDerivatives {
+            unknowns: self.program.unknowns().clone(),
+            rows: self.columns.into_iter().map(row).collect(),
+        })
     }
 
     /// The factorised matrix of the equations at a point, and minus their derivatives by what is known.
-    fn factored(
-        &self,
-        program: &mut Transcription<'_>,
-        x: &[f64],
-    ) -> Option<(Direct, DMatrix<f64>)> {
-        let count = self.count;
+    fn factored(&mut self, x: &[f64]) -> Option<(Direct, DMatrix<f64>)> {
+        let (program, count) = (&mut self.program, self.count);
         let entries = program.jacobian_structure();
         let mut values = vec![0.0; entries.count()];
         program.jacobian(x, &mut values);
@@ -227,7 +205,8 @@ impl<'a> ImplicitFunction<'a> {
 
     /// Finds the multipliers of the constraints, in which the equations are linear: at a state of rest a step of Newton's method changes them
     /// alone.
-    fn balance(&self, program: &mut Transcription<'_>, x: &mut [f64], mut solver: Direct) {
+    fn balance(&mut self, x: &mut [f64], mut solver: Direct) {
+        let program = &mut self.program;
         let n = program.model().coordinate_count();
         let mut g = vec![0.0; program.constraints().lower.len()];
         program.constraint(x, &mut g);

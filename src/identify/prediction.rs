@@ -137,10 +137,7 @@ impl<'a> Problem<'a> {
         grid: &Grid,
     ) -> Result<Prediction, IdentifyError> {
         let of = |&r: &usize| {
-            let point = Point {
-                constants: unknowns.of_constants(),
-                start: unknowns.of_start(r),
-            };
+            let point = [unknowns.of_constants(), unknowns.of_start(r)];
             self.extrapolated(&self.task.recordings[r], point, grid.intervals[r])
         };
         let parts: Vec<_> = match which.len() > 1 && cores() > 1 && has_pool() {
@@ -166,11 +163,11 @@ impl<'a> Problem<'a> {
         Ok(out)
     }
 
-    /// The prediction of one recording, extrapolated.
+    /// The prediction of one recording by constants and unknowns of its start, extrapolated.
     fn extrapolated(
         self,
         recording: &'a Recording,
-        point: Point<'_>,
+        point: [&[f64]; 2],
         intervals: usize,
     ) -> Result<Prediction, IdentifyError> {
         let on = |intervals| self.readings(recording, point, intervals);
@@ -188,13 +185,13 @@ impl<'a> Problem<'a> {
     fn readings(
         self,
         recording: &'a Recording,
-        point: Point<'_>,
+        [constants, start]: [&[f64]; 2],
         intervals: usize,
     ) -> Result<Prediction, IdentifyError> {
-        let setup = self.on_grid(recording, point.constants, intervals)?;
+        let setup = self.on_grid(recording, constants, intervals)?;
         match recording.regime {
-            Regime::Motion => in_motion(&setup, point, intervals),
-            Regime::Rest => at_rest(&setup, point),
+            Regime::Motion => in_motion(&setup, start, intervals),
+            Regime::Rest => at_rest(&setup),
         }
     }
 
@@ -213,19 +210,6 @@ impl<'a> Problem<'a> {
     }
 }
 
-/// Values of all unknowns of one recording.
-#[derive(Clone, Copy, Debug)]
-struct Point<'a> {
-    constants: &'a [f64],
-    start: &'a [f64],
-}
-
-impl Point<'_> {
-    fn count(&self) -> usize {
-        self.constants.len() + self.start.len()
-    }
-}
-
 /// The motion of a recording on a grid of intervals, and why it has fewer.
 pub(super) fn simulated(
     setup: &Setup<'_>,
@@ -240,11 +224,11 @@ pub(super) fn simulated(
 
 fn in_motion(
     setup: &Setup<'_>,
-    point: Point<'_>,
+    values: &[f64],
     intervals: usize,
 ) -> Result<Prediction, IdentifyError> {
     let (model, recording) = (&setup.model, setup.recording);
-    let (start, by_start) = start_of(setup, point)?;
+    let (start, by_start) = start_of(setup, values)?;
     let (discrete, failure) = simulated(setup, &start, intervals);
     if let Some(failure) = failure {
         return Err(recording.refused(failure));
@@ -252,8 +236,8 @@ fn in_motion(
     if discrete.intervals() < intervals {
         return Err(IdentifyError::Stopped);
     }
-    let (from, voltages) = (Some((&start, &by_start)), &setup.inputs.undelayed);
-    let by = derivatives(setup, from, &discrete, voltages, point.count())?;
+    let (from, count) = (Some((&start, &by_start)), setup.constants() + values.len());
+    let by = derivatives(setup, from, &discrete, &setup.inputs.undelayed, count)?;
     let corners = setup.inputs.corners().into_iter();
     let course = Course {
         model,
@@ -262,30 +246,24 @@ fn in_motion(
         corners: corners.filter(|t| *t < recording.duration()).collect(),
         is_still: false,
     };
-    Ok(course.read(&recording.channels, point.count()))
+    Ok(course.read(&recording.channels, count))
 }
 
 /// The start and its derivatives; a state of rest depends on the constants.
-fn start_of(
-    setup: &Setup<'_>,
-    point: Point<'_>,
-) -> Result<(Start, StartDerivatives), IdentifyError> {
-    let constants = point.constants.len();
-    let (start, mut out) = setup.start(constants, point.start)?;
+fn start_of(setup: &Setup<'_>, values: &[f64]) -> Result<(Start, StartDerivatives), IdentifyError> {
+    let (start, mut out) = setup.start(values)?;
     if let BoundaryState::RestAtVoltages(voltages, _) = &setup.control.start {
-        let by = of_rest(setup, voltages, constants)?.derivatives;
-        let mut columns = out.coordinates.columns_mut(0, constants);
-        columns.copy_from(&by.of_coordinates(0));
+        let by = of_rest(setup, voltages)?.derivatives;
+        for (i, mut row) in out.coordinates.row_iter_mut().enumerate() {
+            let by = by.of_coordinate(0, i).into_iter();
+            by.for_each(|by| row.columns_mut(0, by.len()).copy_from(by));
+        }
     }
     Ok((start, out))
 }
 
 /// The state of rest under voltages in V, by source, as a motion of two intervals, with its derivatives by the constants.
-fn of_rest<'a>(
-    setup: &'a Setup<'_>,
-    voltages: &[f64],
-    constants: usize,
-) -> Result<Course<'a>, IdentifyError> {
+fn of_rest<'a>(setup: &'a Setup<'_>, voltages: &[f64]) -> Result<Course<'a>, IdentifyError> {
     let model = &setup.model;
     let state = rest_at(model, voltages, "rest", 0.0);
     let state = state.map_err(|error| setup.recording.refused(error))?;
@@ -297,7 +275,7 @@ fn of_rest<'a>(
     // What a joint transmits is read between two intervals.
     Ok(Course {
         model,
-        derivatives: derivatives(setup, None, &lasting(1), &voltages, constants)?,
+        derivatives: derivatives(setup, None, &lasting(1), &voltages, setup.constants())?,
         discrete: lasting(2),
         corners: Vec::new(),
         is_still: true,
@@ -305,13 +283,13 @@ fn of_rest<'a>(
 }
 
 /// States of rest, one for each time of a reading.
-fn at_rest(setup: &Setup<'_>, point: Point<'_>) -> Result<Prediction, IdentifyError> {
-    let recording = setup.recording;
-    let mut out = Prediction::zeros(recording.count(), point.count());
+fn at_rest(setup: &Setup<'_>) -> Result<Prediction, IdentifyError> {
+    let (recording, count) = (setup.recording, setup.constants());
+    let mut out = Prediction::zeros(recording.count(), count);
     for time in in_order(recording.readings().map(|reading| reading.time)) {
         let voltages = setup.inputs.undelayed.at(time);
-        let course = of_rest(setup, &voltages, point.constants.len())?;
-        let read = course.read(&recording.channels, point.count());
+        let course = of_rest(setup, &voltages)?;
+        let read = course.read(&recording.channels, count);
         for (row, reading) in recording.readings().enumerate() {
             if reading.time == time {
                 out.values[row] = read.values[row];

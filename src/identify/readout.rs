@@ -2,15 +2,16 @@
 //!
 //! Exact derivatives of a discrete motion by constants, start coordinates and start momenta.
 
-use crate::control::problem::{Channel, Voltages};
+use crate::control::problem::{BoundaryState, Channel, Control, Duration, Voltages};
 use crate::control::{Column, MotionDerivatives, StartDerivatives, ends_that_read};
 use crate::coordinates::Configuration;
 use crate::dynamics::{DiscreteTrajectory, Start};
-use crate::functional::{Measure, Sample, SumDerivatives};
+use crate::functional::{Sample, SumDerivatives};
 use crate::identify::error::IdentifyError;
 use crate::identify::setup::Setup;
 use crate::model::{Model, Quantity, Role, Time};
 use nalgebra::{DMatrix, DVector, RowDVector};
+use std::mem;
 use std::ops::Range;
 
 /// A motion with its derivatives by the unknowns at each instant.
@@ -46,12 +47,6 @@ impl Prediction {
 
 /// Values at times of a grid, and their derivatives.
 type Nodes = (Vec<f64>, Vec<RowDVector<f64>>);
-
-/// Storage of the evaluation of measures.
-struct Scratch {
-    part: SumDerivatives,
-    rows: Vec<f64>,
-}
 
 impl Course<'_> {
     /// All channels at their readings.
@@ -150,15 +145,12 @@ impl Course<'_> {
             _ => &self.model.action.intervals,
         };
         let measure = sum.measures[place].as_ref();
-        let map = &self.model.action.map;
-        let mut scratch = Scratch {
-            part: SumDerivatives::new(
-                map.vectors.len(),
-                self.model.action.layout().interval_scalars,
-                None,
-            ),
-            rows: vec![0.0; map.unknowns()],
-        };
+        let mut vectors = measure.vectors();
+        vectors.sort_unstable();
+        vectors.dedup();
+        let (map, layout) = (&self.model.action.map, self.model.action.layout());
+        let mut part = SumDerivatives::new(map.vectors.len(), layout.interval_scalars, None);
+        let mut rows = vec![0.0; map.unknowns()];
         let of = |k: usize| {
             let here = [&instants[k], &instants[k + sides - 1]];
             let scalars = self.discrete.scalars.get(k).map_or(&[][..], Vec::as_slice);
@@ -167,49 +159,29 @@ impl Course<'_> {
                 h: self.discrete.times[1] - self.discrete.times[0],
                 ..Sample::of_instant(&here[0].x, scalars)
             };
+            // What is still has the derivatives of one interval.
+            let first = if self.is_still { 0 } else { k };
             let mut row = RowDVector::zeros(columns);
-            self.differentiate(measure, &sample, here, k, &mut scratch, &mut row);
+            let mut add = |by: Option<&RowDVector<f64>>, slope: f64| {
+                if let Some(by) = by.filter(|_| slope != 0.0) {
+                    row += by * slope;
+                }
+            };
+            measure.gradient(&sample, &mut part.forces, &mut part.rows);
+            for side in (0..2).filter(|&side| measure.reads(side)) {
+                rows.fill(0.0);
+                let (forces, columns) = (&mut part.forces[side], &here[side].columns);
+                map.take_back(&vectors, columns, forces, 1.0, &mut rows);
+                for (i, force) in rows[..map.coordinates].iter().enumerate() {
+                    add(self.derivatives.of_coordinate(first + side, i), *force);
+                }
+            }
+            for (s, slope) in part.rows.iter_mut().enumerate() {
+                add(self.derivatives.of_scalar(first, s), mem::take(slope));
+            }
             (measure.value(&sample), row)
         };
         (0..count).map(of).unzip()
-    }
-
-    /// Adds the derivatives of a measure at instant or interval k.
-    fn differentiate(
-        &self,
-        measure: &dyn Measure,
-        sample: &Sample<'_>,
-        here: [&Configuration; 2],
-        k: usize,
-        scratch: &mut Scratch,
-        out: &mut RowDVector<f64>,
-    ) {
-        let map = &self.model.action.map;
-        // What is still has the derivatives of one interval.
-        let first = if self.is_still { 0 } else { k };
-        let part = &mut scratch.part;
-        measure.gradient(sample, &mut part.forces, &mut part.rows);
-        let mut vectors = measure.vectors();
-        vectors.sort_unstable();
-        vectors.dedup();
-        for side in (0..2).filter(|&side| measure.reads(side)) {
-            scratch.rows.fill(0.0);
-            let (forces, rows) = (&mut part.forces[side], &mut scratch.rows);
-            map.take_back(&vectors, &here[side].columns, forces, 1.0, rows);
-            for (i, force) in scratch.rows[..map.coordinates].iter().enumerate() {
-                let by = self.derivatives.of_coordinate(first + side, i);
-                if let Some(by) = by.filter(|_| *force != 0.0) {
-                    *out += by * *force;
-                }
-            }
-        }
-        for (s, slope) in part.rows.iter().enumerate() {
-            let by = self.derivatives.of_scalar(first, s);
-            if let Some(by) = by.filter(|_| *slope != 0.0) {
-                *out += by * *slope;
-            }
-        }
-        part.rows.fill(0.0);
     }
 }
 
@@ -272,8 +244,17 @@ pub(super) fn derivatives(
     count: usize,
 ) -> Result<MotionDerivatives, IdentifyError> {
     let model = &setup.model;
+    let (intervals, any) = (discrete.intervals(), [f64::NEG_INFINITY, f64::INFINITY]);
     let h = discrete.times[1] - discrete.times[0];
-    let control = setup.open(voltages.clone(), discrete.intervals(), h);
+    let control = Control {
+        start: BoundaryState::Free,
+        // Inputs of which something is sought have columns.
+        load_bounds: setup.inputs.sought().map(|source| (source, any)).collect(),
+        course: Some(voltages.clone()),
+        duration: Duration::Given(h * intervals as f64),
+        intervals,
+        ..setup.control.clone()
+    };
     let known = known(setup, discrete, from.is_some());
     let found = MotionDerivatives::new(model, &control, from, discrete, count, known);
     let found = found.map_err(|error| setup.recording.refused(error))?;

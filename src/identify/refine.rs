@@ -398,7 +398,7 @@ impl FittedMotion {
         let setup = problem.on_grid(recording, found.fit.of_constants(), intervals)?;
         let discrete = match recording.regime {
             Regime::Rest => states_of_rest(&setup)?,
-            Regime::Motion => simulated(&setup, &setup.start(0, start)?.0, intervals).0,
+            Regime::Motion => simulated(&setup, &setup.start(start)?.0, intervals).0,
         };
         Ok(Self {
             recording: index,

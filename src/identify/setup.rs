@@ -14,7 +14,7 @@
 //! before it would have.
 
 use crate::control::problem::{
-    BoundaryState, Control, Duration, Identification, Recording, SoughtStart, Voltages,
+    BoundaryState, Control, Identification, Recording, SoughtStart, Voltages,
 };
 use crate::control::{
     MomentumSlopes, StartDerivatives, ends_that_read, momentum_slopes, resolve_start,
@@ -172,19 +172,21 @@ impl Setup<'_> {
         Ok(changes.basis().ncols() + momenta)
     }
 
+    /// Number of constants.
+    pub(super) fn constants(&self) -> usize {
+        self.control.parameters.len()
+    }
+
     /// The start with changes of its coordinates and momenta, and its derivatives by the constants that masses read, then by these changes.
-    pub(super) fn start(
-        &self,
-        constants: usize,
-        values: &[f64],
-    ) -> Result<(Start, StartDerivatives), IdentifyError> {
+    pub(super) fn start(&self, values: &[f64]) -> Result<(Start, StartDerivatives), IdentifyError> {
         let (mut start, lines) = self.given_start()?;
-        let (n, count) = (self.model.coordinate_count(), constants + values.len());
+        let (n, constants) = (self.model.coordinate_count(), self.constants());
+        let count = constants + values.len();
         let mut by = StartDerivatives {
             coordinates: DMatrix::zeros(n, count),
             momenta: DMatrix::zeros(n, count),
         };
-        for line in lines.iter().filter(|line| line.parameter < constants) {
+        for line in &lines {
             let slopes = DVector::from_column_slice(&line.slopes);
             by.momenta.set_column(line.parameter, &slopes);
         }
@@ -213,20 +215,6 @@ impl Setup<'_> {
             start.rates = None;
         }
         Ok((start, by))
-    }
-
-    /// The problem whose transcription has the derivatives by the start too.
-    pub(super) fn open(&self, voltages: Voltages, intervals: usize, h: f64) -> Control {
-        let any = [f64::NEG_INFINITY, f64::INFINITY];
-        Control {
-            start: BoundaryState::Free,
-            // Inputs of which something is sought have columns.
-            load_bounds: self.inputs.sought().map(|source| (source, any)).collect(),
-            course: Some(voltages),
-            duration: Duration::Given(h * intervals as f64),
-            intervals,
-            ..self.control.clone()
-        }
     }
 }
 

@@ -18,7 +18,6 @@ use crate::nlp::Nlp;
 use crate::sensitivity::conditions::{Direction, NoSensitivity, Side};
 use crate::sensitivity::kernel::Kernel;
 use crate::sensitivity::with_parameters::{AtRest, Mapped, Opened};
-use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
 /// A root of a square that is zero, as a part of its bound.
@@ -33,7 +32,7 @@ pub(super) struct Directions<'a> {
     /// The start as the problem gives it.
     start: &'a BoundaryState,
     /// Derivatives of the states of rest at start and goal by parameters of the model, then by sources.
-    rests: [Option<DMatrix<f64>>; 2],
+    rests: [Option<MotionDerivatives>; 2],
     sources: [Vec<usize>; 2],
     /// Directions of the weights of the objective.
     weights: Vec<(WeightOf, Direction)>,
@@ -147,9 +146,10 @@ impl<'a> Directions<'a> {
 
     /// Derivatives of the coordinates of a state of rest by one of the columns of its derivatives.
     fn by_rest(&self, end: usize, column: usize) -> Vec<(usize, f64)> {
-        let of = |by: &DMatrix<f64>| -> Vec<_> {
+        let of = |by: &MotionDerivatives| -> Vec<_> {
             let own = self.of_end(end);
-            own.map(|(number, i)| (number, by[(i, column)])).collect()
+            own.filter_map(|(number, i)| Some((number, by.of_coordinate(0, i)?[column])))
+                .collect()
         };
         self.rests[end].as_ref().map(of).unwrap_or_default()
     }
@@ -315,7 +315,7 @@ fn rest_derivatives(
     opened: &Opened,
     rest: &AtRest,
     sources: &[usize],
-) -> Result<DMatrix<f64>, NoSensitivity> {
+) -> Result<MotionDerivatives, NoSensitivity> {
     let Opened { model, control, .. } = opened;
     let AtRest { state, voltages } = rest;
     let control = still(control, voltages, sources);
@@ -337,7 +337,7 @@ fn rest_derivatives(
     let found = MotionDerivatives::new(model, &control, None, &discrete, count, known);
     let found = found.map_err(NoSensitivity::refused)?;
     let singular = || NoSensitivity::refused("a state of rest has no derivative");
-    Ok(found.ok_or_else(singular)?.of_coordinates(0))
+    found.ok_or_else(singular)
 }
 
 /// The problem of a motion of one interval of 1 ms under given inputs, but those of some sources.
