@@ -62,14 +62,10 @@ pub(crate) fn ends_that_read(
     quantity: &Quantity,
     parameters: &[Parameter],
 ) -> Option<[Quantity; 2]> {
-    if !parameters
-        .iter()
-        .any(|parameter| reads(quantity, parameter))
-    {
-        return None;
-    }
+    let mut parameters = parameters.iter();
+    let is_read = parameters.any(|parameter| reads(quantity, parameter));
     let [start, end] = [At::Start, At::End].map(|at| quantity.in_intervals(at));
-    Some([start?, end?])
+    Some([start?, end?]).filter(|_| is_read)
 }
 
 /// Puts limits of the instants that read a parameter in the place of the starts of intervals and the end of the last one: parameters belong to

@@ -70,9 +70,8 @@ pub fn rest_programs<'m>(
         };
         let h = control.duration.first() / control.intervals as f64;
         let limits = boundary.limits.list.iter().map(BoundedQuantity::of_rest);
-        let limits = Limits {
-            list: limits.collect(),
-        };
+        let list = limits.collect();
+        let limits = Limits { list };
         let (program, point) = equations(model, limits, control, z, voltages, h)?;
         // At the goal, what muscles remember may still relax.
         let is_free =
@@ -124,15 +123,7 @@ fn equations<'m>(
         limits,
         ..BoundaryConditions::without_goal(start, model.coordinate_count())
     };
-    let mut scalars = model.scalars(voltages);
-    scalars = model.variables.scalars(&scalars);
-    for (s, parameter) in model
-        .variables
-        .range(Role::Parameter)
-        .zip(&control.parameters)
-    {
-        scalars[s] = parameter.guess;
-    }
+    let scalars = model.variables.scalars(&model.scalars(voltages));
     let discrete = DiscreteTrajectory::in_steps(h, vec![z.to_vec(); 2], vec![scalars]);
     let initial = InitialGuess::of_motion(discrete, h);
     let program = Transcription::of_any(model, &boundary, &rest, &initial)?;
