@@ -58,7 +58,7 @@ impl<'l> Controller<'l> {
     /// A controller with samples at this distance or more, and a delay, in ms.
     pub fn new(law: &'l Law, sample: f64, delay: f64) -> Self {
         let width = law.width();
-        let read = law.measured.len() + law.forces() + law.targets() + law.integral.of.len();
+        let read = law.estimated() + law.integral.of.len();
         Self {
             law,
             delay,
@@ -79,7 +79,7 @@ impl<'l> Controller<'l> {
         let elapsed = self.sampled.map_or(0.0, |before| time - before);
         self.sampled = Some(time);
         // The deviation of the last sample lasted until now.
-        let first = self.integrals();
+        let first = law.estimated();
         for (place, &of) in law.integral.of.iter().enumerate() {
             self.deviation[first + place] += elapsed * self.deviation[of];
         }
@@ -121,11 +121,6 @@ impl<'l> Controller<'l> {
         }
     }
 
-    /// Place of the integrals among what the gains read.
-    fn integrals(&self) -> usize {
-        self.law.measured.len() + self.law.forces() + self.law.targets()
-    }
-
     /// Deviation of an input from the motion at a time in ms, of its square where it acts by it, as bounds leave it.
     fn deviation_of_input(&self, time: f64, i: usize) -> f64 {
         let (_, acting) = self.corrections.at(time);
@@ -137,7 +132,7 @@ impl<'l> Controller<'l> {
     /// Takes in the corrections that act in the intervals of the delay from a time in ms on, as bounds leave them.
     fn predict(&mut self, time: f64) {
         let law = self.law;
-        let first = self.integrals() + law.integral.of.len();
+        let first = law.estimated() + law.integral.of.len();
         for k in 0..law.delay {
             let middle = time + (k as f64 + 0.5) * law.h;
             for i in 0..law.width() {
@@ -193,7 +188,7 @@ impl<'l> Estimate<'l> {
     /// That of the observer of a law, where there is one, on the motion.
     pub fn new(law: &'l Law) -> Option<Self> {
         let observer = law.observer.as_ref()?;
-        let forces = observer.forces();
+        let forces = law.forces();
         let size = law.measured.len() + forces;
         let goal = law.held.as_ref().or(law.points.last());
         let goal = &goal.expect("a law has an interval").inputs;

@@ -166,6 +166,11 @@ impl Law {
         if self.forces() > 0 { self.width() } else { 0 }
     }
 
+    /// Number of measured quantities, constant disturbances, and inputs against them.
+    pub(crate) fn estimated(&self) -> usize {
+        self.measured.len() + self.forces() + self.targets()
+    }
+
     /// Number of inputs.
     pub fn width(&self) -> usize {
         self.inputs.len()
@@ -306,11 +311,6 @@ pub struct Observer {
 }
 
 impl Observer {
-    /// Number of constant disturbances.
-    pub fn forces(&self) -> usize {
-        self.lasting.as_ref().map_or(0, |lasting| lasting.on.len())
-    }
-
     /// The filter of an interval; the last one where the end is not held.
     pub(super) fn at(&self, interval: usize) -> &Filter {
         let last = self.held.as_ref().or(self.points.last());

@@ -30,7 +30,7 @@ impl<'h> Predicted<'h> {
             sampled: None,
             sent: vec![vec![0.0; width]; delay + 1],
             values: law.at(0.0).state.clone(),
-            deviation: vec![0.0; law.measured.len() + law.forces() + law.targets()],
+            deviation: vec![0.0; law.estimated()],
             correction: vec![0.0; width],
         }
     }
