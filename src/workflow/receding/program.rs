@@ -11,11 +11,11 @@
 
 use crate::control::{Column, Numbering, Transcription};
 use crate::dynamics::{Independent, Start};
-use crate::feedback::{self, product};
+use crate::feedback::product;
 use crate::model::Model;
 use crate::nlp::squares::{InSquares, Squares};
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
-use crate::workflow::regulator::{Regulated, RegulatedStep};
+use crate::workflow::regulator::Regulated;
 use nalgebra::DMatrix;
 use std::mem;
 
@@ -558,17 +558,12 @@ pub(super) struct Reference {
 impl Reference {
     /// That of a regulator; none where the goal is not held.
     pub(super) fn new(of: &Regulated, model: &Model, steered: &Steered) -> Option<Self> {
-        let (held_step, held) = of.held.as_ref()?;
+        let (held, _) = of.held.as_ref()?;
         let law = &of.law;
-        let mut after = of.end_cost.clone();
-        let mut ends = vec![];
-        for step in of.steps.iter().rev() {
-            after = step.riccati(&after)?.cost;
-            ends.push(after.clone());
-        }
-        ends.reverse();
+        let motion = law.points.iter().zip(&of.steps);
+        let all = motion.chain([(law.held.as_ref()?, held)]);
         let mut z = model.reference_coordinates();
-        let mut point = |at: &feedback::Point, step: &RegulatedStep, end: &DMatrix<f64>| Point {
+        let points = all.map(|(at, step)| Point {
             state: {
                 let start = steered.start(model, &at.state, mem::take(&mut z));
                 let mut momentum = start.momentum;
@@ -585,17 +580,12 @@ impl Reference {
                 .map(|(of, input)| of.acting(*input))
                 .collect(),
             places: step.places.clone(),
-            end: end.clone(),
+            end: step.cost.clone(),
             slope: step.lasting.as_ref().map(|[_, slope]| slope.clone()),
-        };
-        let motion = law.points.iter().zip(&of.steps).zip(&ends);
-        let mut points: Vec<Point> = motion
-            .map(|((at, step), end)| point(at, step, end))
-            .collect();
-        points.push(point(law.held.as_ref()?, held_step, &held.cost));
-        let costs = &held_step.costs.inputs;
+        });
+        let costs = &held.costs.inputs;
         Some(Self {
-            points,
+            points: points.collect(),
             rest: of.lasting.clone(),
             inputs: costs.diagonal().iter().copied().collect(),
         })

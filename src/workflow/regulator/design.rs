@@ -263,6 +263,7 @@ impl<'a> Design<'a> {
             },
             places: self.place_costs(at).resize(coordinates, coordinates, 0.0),
             gain: DMatrix::zeros(u, size),
+            cost: DMatrix::zeros(size, size),
             // Integral states have no constant-disturbance input.
             by_forces: by_forces.clone(),
             lasting: None,

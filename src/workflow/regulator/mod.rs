@@ -87,6 +87,7 @@ impl Design<'_> {
                 done.ok_or(NoRegulator::Recursion(k))?;
             }
             cost = found.cost;
+            step.cost.clone_from(&cost);
         }
         let mut law = self.law(&steps, &motion, held.as_ref());
         let mut observer_radius = None;
@@ -132,13 +133,12 @@ impl Design<'_> {
         let without_integrals = scaled.by_state.view((0, 0), (moving, moving));
         held.open_radius = spectral_radius(&without_integrals.into_owned());
         // Back to rad, mm, V.
-        held.gain = DMatrix::from_fn(held.gain.nrows(), held.gain.ncols(), |i, j| {
-            held.gain[(i, j)] * self.ranges[i] / scales[j]
-        });
-        held.cost = DMatrix::from_fn(scales.len(), scales.len(), |i, j| {
-            held.cost[(i, j)] / (scales[i] * scales[j])
-        });
-        step.gain.clone_from(&held.gain);
+        let ranges = &self.ranges;
+        let HeldGain { gain, cost, .. } = &mut held;
+        *gain = gain.map_with_location(|i, j, gain| gain * ranges[i] / scales[j]);
+        *cost = cost.map_with_location(|i, j, cost| cost / (scales[i] * scales[j]));
+        step.gain.clone_from(gain);
+        step.cost.clone_from(cost);
         Ok((step, held))
     }
 
@@ -176,25 +176,18 @@ impl Design<'_> {
             scales[row] = if by > 0.0 { scales[own] / by } else { 1.0 };
         }
         let square = |m: &DMatrix<f64>, power: i32| {
-            DMatrix::from_fn(n, n, |i, j| m[(i, j)] * scales[j] * scales[i].powi(power))
+            m.map_with_location(|i, j, value| value * scales[j] * scales[i].powi(power))
         };
-        let inputs = &step.costs.inputs;
+        let (by_inputs, inputs, ranges) = (&step.by_inputs, &step.costs.inputs, &self.ranges);
         let scaled = RegulatedStep {
             by_state: square(&step.by_state, -1),
-            by_inputs: DMatrix::from_fn(n, self.inputs.len(), |i, j| {
-                step.by_inputs[(i, j)] * self.ranges[j] / scales[i]
-            }),
+            by_inputs: by_inputs.map_with_location(|i, j, by| by * ranges[j] / scales[i]),
             costs: Costs {
                 state: square(q, 1),
-                inputs: DMatrix::from_fn(inputs.nrows(), inputs.ncols(), |i, j| {
-                    inputs[(i, j)] * self.ranges[i] * self.ranges[j]
-                }),
+                inputs: inputs.map_with_location(|i, j, cost| cost * ranges[i] * ranges[j]),
             },
             rates: (0..n).map(|i| step.rates[i] * scales[i].powi(2)).collect(),
-            places: step.places.clone(),
-            gain: step.gain.clone(),
-            by_forces: step.by_forces.clone(),
-            lasting: None,
+            ..step.clone()
         };
         (scales, scaled)
     }

@@ -78,6 +78,8 @@ pub struct RegulatedStep {
     pub places: DMatrix<f64>,
     /// K, over the state.
     pub gain: DMatrix<f64>,
+    /// S, the cost of the state and of all that follows.
+    pub cost: DMatrix<f64>,
     /// E, over constant disturbances on joints; no columns without them.
     pub by_forces: DMatrix<f64>,
     /// Of constant disturbances and the inputs against them: the gain over them, and P at the start of the step.
