@@ -232,7 +232,7 @@ impl Design<'_> {
         let (n, size) = (self.coordinates.len() + self.momenta.len(), state.len());
         let to_rates = |of_next: DMatrix<f64>| {
             let by = self.over_rates(of_next, next);
-            DMatrix::from_fn(n, by.ncols(), |i, j| by[(i, j)] / state[i])
+            by.map_with_location(|i, _, by| by / state[i])
         };
         let of_state = to_rates(step.by_state.view((0, 0), (n, n)) * self.by_rates(at));
         let of_inputs = to_rates(step.by_inputs.rows(0, n).into_owned());
@@ -246,22 +246,20 @@ impl Design<'_> {
         let by_inputs = of_inputs.resize_vertically(size, 0.0);
         let (values, output) = self.read(observation, at, size);
         let noise = |i: usize| observation.inputs * self.ranges[i];
-        let disturbed =
-            DMatrix::from_fn(size, by_inputs.ncols(), |i, j| by_inputs[(i, j)] * noise(j));
+        let disturbed = by_inputs.map_with_location(|_, j, by| by * noise(j));
         let mut covariance = &disturbed * disturbed.transpose();
         for i in self.coordinates.len()..n {
             covariance[(i, i)] += observation.rates * observation.rates;
         }
         let lasting = observation.lasting.unwrap_or(0.0);
         (n..size).for_each(|i| covariance[(i, i)] = lasting * lasting);
+        let [by_state, output] = [by_state, output].map(|of| of.transpose());
         Scaled {
-            by_state: DMatrix::from_fn(size, size, |j, i| by_state[(i, j)] * state[j]),
-            output: DMatrix::from_fn(size, output.nrows(), |j, i| {
-                output[(i, j)] * state[j] / readings[i]
-            }),
+            by_state: by_state.map_with_location(|j, _, by| by * state[j]),
+            output: output.map_with_location(|j, i, by| by * state[j] / readings[i]),
             noise: Costs {
                 state: covariance,
-                inputs: DMatrix::identity(output.nrows(), output.nrows()),
+                inputs: DMatrix::identity(output.ncols(), output.ncols()),
             },
             by_inputs,
             readings: values,
@@ -307,15 +305,14 @@ impl Design<'_> {
         let inner = inner.cholesky();
         let inner = inner.ok_or_else(|| NoRegulator::Observer(self.not_seen(&scaled)))?;
         let gain = inner.solve(&toward);
-        let (n, outputs) = (state.len(), of.len());
+        let [by_state, output, gain] =
+            [scaled.by_state, scaled.output, gain].map(|of| of.transpose());
         Ok(Filter {
             readings: scaled.readings,
-            by_state: DMatrix::from_fn(n, n, |i, j| scaled.by_state[(j, i)] * state[i] / state[j]),
-            by_inputs: DMatrix::from_fn(n, self.inputs.len(), |i, j| {
-                scaled.by_inputs[(i, j)] * state[i]
-            }),
-            output: DMatrix::from_fn(outputs, n, |i, j| scaled.output[(j, i)] * of[i] / state[j]),
-            gain: DMatrix::from_fn(n, outputs, |i, j| gain[(j, i)] * state[i] / of[j]),
+            by_state: by_state.map_with_location(|i, j, by| by * state[i] / state[j]),
+            by_inputs: scaled.by_inputs.map_with_location(|i, _, by| by * state[i]),
+            output: output.map_with_location(|i, j, by| by * of[i] / state[j]),
+            gain: gain.map_with_location(|i, j, gain| gain * state[i] / of[j]),
         })
     }
 }
