@@ -359,23 +359,14 @@ fn factor(optimum: &Optimum, accuracy: f64) -> f64 {
 
 /// Returns the values of an optimum that are compared, without its objective.
 fn sample(optimum: &Optimum, control: &Control) -> ErrorSample {
-    let kept = &optimum.motion;
+    let (model, kept) = (&optimum.model, &optimum.motion);
+    let mut sample = ErrorSample::of_motion(model, &discrete_trajectory(model, kept));
     let is_free = matches!(control.duration, Duration::Free { .. });
-    let sample = ErrorSample {
-        duration: is_free.then(|| kept.times[kept.intervals()]),
-        ..ErrorSample::of_motion(&optimum.model, &discrete_trajectory(&optimum.model, kept))
-    };
-    ErrorSample {
-        response: Some(response(optimum, &sample)),
-        ..sample
-    }
-}
-
-/// Deviation of an optimal motion from the one under its voltages with half the step; infinite where there is none.
-fn response(optimum: &Optimum, optimal: &ErrorSample) -> f64 {
+    sample.duration = is_free.then(|| kept.times[kept.intervals()]);
     let tested = optimum.resimulation.as_ref();
     let half = tested.and_then(|tested| tested.half.as_ref());
-    half.map_or(f64::INFINITY, |discrete| {
-        optimal.deviation(&ErrorSample::of_motion(&optimum.model, discrete))
-    })
+    let half = half.map(|half| ErrorSample::of_motion(model, half));
+    let response = half.map_or(f64::INFINITY, |half| sample.deviation(&half));
+    sample.response = Some(response);
+    sample
 }
