@@ -2,11 +2,11 @@
 
 use crate::control::problem::{Combined, Control, ControlTask, Guess, MotionTask, QuantityCost};
 use crate::control::{
-    BoundaryConditions, Carried, Column, PEAK_VOLTAGE, RestProgram, Solution, Transcription, guess,
+    BoundaryConditions, Carried, PEAK_VOLTAGE, RestProgram, Solution, Transcription, guess,
     rest_programs,
 };
 use crate::ipopt::{Start, StartingPoint};
-use crate::model::{Model, Parameter, System, What, with_parameters};
+use crate::model::{Model, Parameter, Role, System, What, with_parameters};
 use crate::nlp::joined::{Joined, Places, SharedVariable};
 use crate::nlp::{Multipliers, Nlp};
 use crate::workflow::error::WorkflowError;
@@ -355,12 +355,10 @@ fn input(program: &Transcription<'_>, name: &str, k: usize) -> Option<usize> {
 /// Free parameters of the scene with their columns.
 fn constants<'p>(program: &'p Transcription<'_>) -> Vec<(&'p Parameter, usize)> {
     let model = program.model();
-    let columns = program.unknowns().columns.iter().enumerate();
-    let all = columns.filter_map(|(place, column)| match column {
-        Column::Parameter { .. } => Some((model.parameter(column.of(&model.variables)), place)),
-        _ => None,
-    });
-    all.filter(|(constant, _)| constant.name != PEAK_VOLTAGE)
+    let parameters = model.analysis.parameters.iter();
+    let all = parameters.zip(model.variables.range(Role::Parameter));
+    let all = all.filter(|(constant, _)| constant.name != PEAK_VOLTAGE);
+    all.filter_map(|(constant, s)| Some((constant, program.unknowns().scalar(0, s)?)))
         .collect()
 }
 
