@@ -47,8 +47,8 @@ impl<'a> Scope<'a> {
         self.wrong(format!("no key {key:?}"), format!("the key {key:?}"))
     }
 
-    /// The error of a fault, as it is told, of what stands here.
-    pub(crate) fn told(&self, fault: Fault) -> SceneError {
+    /// The error of a fault of what stands here, in its own words.
+    pub(crate) fn error_of(&self, fault: Fault) -> SceneError {
         self.wrong(fault.found, fault.expected)
     }
 
@@ -214,7 +214,7 @@ impl<'a> Scope<'a> {
         reserved: &[&str],
         place: impl Fn(usize) -> Self,
     ) -> Result<()> {
-        unique(names, reserved).map_err(|(index, fault)| place(index).told(fault))
+        unique(names, reserved).map_err(|(index, fault)| place(index).error_of(fault))
     }
 }
 

@@ -225,7 +225,7 @@ pub(super) fn priors(
         let [of_value, of_size] = ["value", "standard_deviation"].map(|key| place.key(key));
         let text = serde_json::to_value(&spec.value).unwrap_or_default();
         let with = scene.with(&JsonPath::parse(path).unwrap_or_default(), &text);
-        with.map_err(|fault| of_value.told(fault))?;
+        with.map_err(|fault| of_value.error_of(fault))?;
         let size = &spec.standard_deviation;
         let written = [&spec.value, &bounds.min, &bounds.max];
         let unit = written.into_iter().find_map(|one| one.dimension());

@@ -45,8 +45,8 @@ fn sought(
     let texts = [&spec.min, &spec.max].map(|bound| serde_json::to_value(bound).unwrap_or_default());
     let constant = scene.constant(path, [&texts[0], &texts[1]], [lower, upper]);
     let mut constant = constant.map_err(|fault| match fault.at.as_str() {
-        "" => at.told(fault),
-        bound => at.key(bound).told(fault),
+        "" => at.error_of(fault),
+        bound => at.key(bound).error_of(fault),
     })?;
     add_others(&mut constant, &spec.also, [lower, upper], scene, at)?;
     let SceneConstant {
@@ -72,7 +72,7 @@ fn sought(
         let text = serde_json::to_value(guess).unwrap_or_default();
         let place = JsonPath::parse(path).unwrap_or_default();
         let with = scene.with(&place, &text);
-        with.map_err(|fault| at.key("guess").told(fault))?;
+        with.map_err(|fault| at.key("guess").error_of(fault))?;
     }
     Ok(Parameter {
         name: path.to_owned(),
@@ -96,7 +96,7 @@ fn add_others(
         let si = bounds.map(|bound| bound * factor);
         let values = si.map(Value::from);
         let other = scene.constant(path, [&values[0], &values[1]], si);
-        let other = other.map_err(|fault| place.told(fault))?;
+        let other = other.map_err(|fault| place.error_of(fault))?;
         let lists = [&constant.followers, &other.followers];
         let [own, others] = lists.map(|list| unit_of(list, scene.system).symbol);
         refuse!(if own != others, place;
@@ -234,7 +234,7 @@ fn of_scene(
     let texts = ends.each_ref().map(|(value, _)| value);
     let bounds = ends.each_ref().map(|(_, si)| *si);
     let constant = scene.constant(path, texts, bounds);
-    let mut constant = constant.map_err(|fault| at.told(fault))?;
+    let mut constant = constant.map_err(|fault| at.error_of(fault))?;
     add_others(&mut constant, &spec.also, bounds, scene, at)?;
     let SceneConstant {
         followers,
@@ -253,7 +253,7 @@ fn of_scene(
         Some(ToleranceSpec::Size(size)) => {
             let text = serde_json::to_value(size).unwrap_or_default();
             let of = scene.with(place, &text);
-            of.map_err(|fault| at.key("tolerance").told(fault))?;
+            of.map_err(|fault| at.key("tolerance").error_of(fault))?;
             Some(size.si() * from_si)
         }
         Some(ToleranceSpec::Part(part)) => Some(part * value.abs()),
