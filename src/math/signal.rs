@@ -68,25 +68,8 @@ impl Signal {
     #[must_use]
     pub fn scaled(&self, factor: f64) -> Self {
         let mut out = self.clone();
-        match &mut out {
-            Self::Constant(value) => *value *= factor,
-            Self::Ramp { from, to, .. } => [from, to].into_iter().for_each(|x| *x *= factor),
-            Self::Sine {
-                mean, amplitude, ..
-            } => [mean, amplitude].into_iter().for_each(|x| *x *= factor),
-            Self::Table { values, .. } | Self::Steps { values, .. } => {
-                values.iter_mut().for_each(|x| *x *= factor);
-            }
-        }
+        out.heights().into_iter().for_each(|x| *x *= factor);
         out
-    }
-
-    /// The value, where it is the same all the time.
-    pub fn constant(&self) -> Option<f64> {
-        match self {
-            Self::Constant(value) => Some(*value),
-            _ => None,
-        }
     }
 
     /// The value at a time.
@@ -148,15 +131,18 @@ impl Signal {
 
     /// Returns true if it is zero all the time.
     pub fn is_zero(&self) -> bool {
+        self.clone().heights().iter().all(|x| **x == 0.0)
+    }
+
+    /// The values of which the function is made, in which it is linear.
+    fn heights(&mut self) -> Vec<&mut f64> {
         match self {
-            Self::Constant(value) => *value == 0.0,
-            Self::Ramp { from, to, .. } => *from == 0.0 && *to == 0.0,
+            Self::Constant(value) => vec![value],
+            Self::Ramp { from, to, .. } => vec![from, to],
             Self::Sine {
                 mean, amplitude, ..
-            } => *mean == 0.0 && *amplitude == 0.0,
-            Self::Table { values, .. } | Self::Steps { values, .. } => {
-                values.iter().all(|&value| value == 0.0)
-            }
+            } => vec![mean, amplitude],
+            Self::Table { values, .. } | Self::Steps { values, .. } => values.iter_mut().collect(),
         }
     }
 
@@ -216,11 +202,9 @@ impl Signal {
             return (*amplitude == 0.0).then_some(*mean);
         }
         let value = self.at(from);
-        let mut times = self
-            .corners()
-            .into_iter()
-            .filter(|t| (from..to).contains(t));
-        let is_constant = self.at(to) == value && times.all(|t| self.at(t) == value);
+        let corners = self.corners();
+        let mut times = corners.iter().filter(|t| (from..to).contains(*t));
+        let is_constant = self.at(to) == value && times.all(|t| self.at(*t) == value);
         is_constant.then_some(value)
     }
 

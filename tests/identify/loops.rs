@@ -4,9 +4,7 @@ use crate::derivatives::{all, all_act_as_they_say, channel, of_pair_in, readings
 use crate::oscillator::{self, joint};
 use nalgebra::DVector;
 use proboscis::Signal;
-use proboscis::control::problem::{
-    BoundaryState, Identification, Recording, Regime, SoughtStart, Voltages,
-};
+use proboscis::control::problem::{BoundaryState, Identification, Recording, Regime, SoughtStart};
 use proboscis::files::read_problem;
 use proboscis::identify::{Grid, Problem, Unknowns};
 use proboscis::model::system::ElectricConstants;
