@@ -268,11 +268,10 @@ impl Closing {
 
     /// Lets the other coordinates of an instant and their rates follow, from where they are; false where the loops cannot be closed.
     pub fn close(&mut self, model: &Model, instant: &mut Configuration, rates: &mut [f64]) -> bool {
-        let mut update = if self.dependent.is_empty() {
-            0.0
-        } else {
-            f64::INFINITY
-        };
+        if self.dependent.is_empty() {
+            return true;
+        }
+        let mut update = f64::INFINITY;
         for _ in 0..UPDATES {
             if update <= SETTLED {
                 break;
