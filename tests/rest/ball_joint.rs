@@ -43,26 +43,29 @@ impl Top {
         }
     }
 
-    /// Energy in J of a rotation under a part of the weight.
-    fn energy(&self, rotation: &Rotation3<f64>, part: f64) -> f64 {
-        let spring = |(a, b, k): &(Vector3<f64>, Vector3<f64>, f64)| {
-            let stretched = (rotation * b - a).norm() - (b - a).norm();
-            0.5 * k * stretched * stretched
-        };
-        let centre = rotation * Vector3::new(0.0, 0.5 * LENGTH, 0.0);
-        self.springs.iter().map(spring).sum::<f64>() - part * MASS * self.gravity.dot(&centre)
-    }
-
-    /// Slope and curvature by rotation vectors, by differences.
+    /// Slope and curvature of the energy in J under a part of the weight by rotation vectors ω, by which a place q turns to q + ω×q + ½ ω×(ω×q).
     fn derivatives(&self, at: &Rotation3<f64>, part: f64) -> (Vector3<f64>, Matrix3<f64>) {
-        let h = 1e-4;
-        let moved = |by: Vector3<f64>| self.energy(&(Rotation3::new(by) * at), part);
-        let e = |i: usize| Vector3::ith(i, h);
-        let slope = Vector3::from_fn(|i, _| (moved(e(i)) - moved(-e(i))) / (2.0 * h));
-        let curvature = Matrix3::from_fn(|i, j| {
-            let same = moved(e(i) + e(j)) + moved(-e(i) - e(j));
-            (same - moved(e(i) - e(j)) - moved(e(j) - e(i))) / (4.0 * h * h)
-        });
+        let (mut slope, mut curvature) = (Vector3::zeros(), Matrix3::zeros());
+        // Curvature of d·q.
+        let linear = |q: Vector3<f64>, d: Vector3<f64>| {
+            let both = q * d.transpose();
+            0.5 * (both + both.transpose()) - Matrix3::from_diagonal_element(q.dot(&d))
+        };
+        for (a, b, stiffness) in &self.springs {
+            let q = at * b;
+            let (length, at_rest) = ((q - a).norm(), (b - a).norm());
+            // Of ½k(l − l₀)², where l² changes by −2 a·q.
+            let by_square = 0.5 * stiffness * (1.0 - at_rest / length);
+            let of_square = q.cross(a) * -2.0;
+            slope += of_square * by_square;
+            curvature += linear(q, *a) * (-2.0 * by_square);
+            let bend = 0.25 * stiffness * at_rest / length.powi(3);
+            curvature += of_square * of_square.transpose() * bend;
+        }
+        let centre = at * Vector3::new(0.0, 0.5 * LENGTH, 0.0);
+        let weight = self.gravity * (part * MASS);
+        slope -= centre.cross(&weight);
+        curvature -= linear(centre, weight);
         (slope, curvature)
     }
 
