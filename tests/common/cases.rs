@@ -278,7 +278,7 @@ pub fn cases() -> Vec<Case> {
             c.objective.energies = energies(&[(0, 2e3), (2, 3e3)], &[(2, 1e3)]);
             c.given.insert(4, Signal::Constant(1e-4));
         }),
-        case("charges, all limits", charged(), &|c| {
+        case("charges as inputs, all limits", charged(), &|c| {
             c.load_bounds.insert(4, [1e-5, 3e-4]);
             c.limits = charge_limits();
         }),
@@ -295,6 +295,7 @@ pub fn cases() -> Vec<Case> {
                 c.duration = free;
                 c.objective = every_objective();
                 c.goal = joints(&[(1, 2.0)]);
+                c.limits = vec![tension(0), tension(2)];
             },
         ),
         case(
@@ -312,14 +313,19 @@ pub fn cases() -> Vec<Case> {
         case("blocks that remember", remembering_blocks(), &|c| {
             c.goal = open_end();
         }),
-        case("blocks", blocks(), &|c| c.goal = corner_goal()),
+        case("blocks, marker at rest", blocks(), &|c| {
+            c.goal = corner_goal();
+        }),
         case("blocks with loads", pressed(), &|c| c.goal = corner_goal()),
         case("blocks with loads, free time", pressed(), &|c| {
             (c.duration, c.goal) = (free, corner_goal());
         }),
         case("blocks, marker at rest, free time", blocks(), &|c| {
             c.duration = free;
-            c.objective = every_objective();
+            c.objective = Objective {
+                quantities: tracked(&[1], &[]).quantities,
+                ..every_objective()
+            };
             let field = |block: usize, region: Option<usize>| {
                 Limit::below(What::Field(FieldPlace::Block { block, region }), 1e4)
             };
@@ -364,11 +370,6 @@ pub fn cases() -> Vec<Case> {
             };
             c.goal = BoundaryState::RestAtVoltages(hold(2), Rest::Everything);
             c.duration = free;
-        }),
-        case("blocks that follow, free time", blocks(), &|c| {
-            c.objective = tracked(&[1], &[]);
-            c.duration = free;
-            c.goal = corner_goal();
         }),
         case("branched tree, free end", branched(), &|c| {
             c.objective = tracked(&[0], &[(0, true)]);

@@ -48,7 +48,8 @@ pub fn measuring() -> Vec<Case> {
             c.limits = vec![torque(0), torque(1), torque(2).at_part(1.0)];
         }),
         case("branched tree, reactions, free time", branched(), &|c| {
-            c.limits = vec![force(0), torque(1), torque(2)];
+            c.limits = vec![force(0), force(1), force(2).at_part(1.0)];
+            c.limits.extend([torque(1), torque(2)]);
             c.duration = free;
             c.objective.rate = 0.3;
         }),

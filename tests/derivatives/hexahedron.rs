@@ -17,8 +17,6 @@ use proboscis::math::{Matrix, Vector};
 
 /// Rounding of some thousands of operations at values of order one.
 const TOLERANCE: f64 = 2e-12;
-/// Random states at which each law is looked at.
-pub(crate) const STATES: usize = 3;
 
 /// A flat copy of what an element writes: value, gradient, Hessian of 24 or 32 arguments.
 pub(crate) struct Flat {
@@ -147,52 +145,50 @@ fn all_derivatives<F: Field>(
     let n = if electric.is_some() { 32 } else { 24 };
     for volume in [Volume::Pointwise, Volume::Mean] {
         let law = law(volume, field);
-        for _ in 0..STATES {
-            let (nodes, x, phi) = state(&mut random);
-            let (w, w_phi): ([Vector; 8], [f64; 8]) = (
-                std::array::from_fn(|_| random.vector()),
-                std::array::from_fn(|_| random.unit()),
-            );
-            let shape = ElementGeometry::new(&nodes).unwrap();
-            let naive = Naive {
-                mu: law.shear_modulus,
-                lambda: law.lame_lambda,
-                electric,
-                volume,
-                points: gauss(&nodes),
-            };
-            let list = |x: &[Vector; 8], phi: &[f64; 8]| -> Vec<f64> {
-                let x = x.iter().flat_map(|x| [x.x, x.y, x.z]);
-                x.chain(*phi).take(n).collect()
-            };
-            let (p, d) = (list(&x, &phi), list(&w, &w_phi));
-            let (plain, along) = oracle(&p, &d, |p| naive.energy(p));
+        let (nodes, x, phi) = state(&mut random);
+        let (w, w_phi): ([Vector; 8], [f64; 8]) = (
+            std::array::from_fn(|_| random.vector()),
+            std::array::from_fn(|_| random.unit()),
+        );
+        let shape = ElementGeometry::new(&nodes).unwrap();
+        let naive = Naive {
+            mu: law.shear_modulus,
+            lambda: law.lame_lambda,
+            electric,
+            volume,
+            points: gauss(&nodes),
+        };
+        let list = |x: &[Vector; 8], phi: &[f64; 8]| -> Vec<f64> {
+            let x = x.iter().flat_map(|x| [x.x, x.y, x.z]);
+            x.chain(*phi).take(n).collect()
+        };
+        let (p, d) = (list(&x, &phi), list(&w, &w_phi));
+        let (plain, along) = oracle(&p, &d, |p| naive.energy(p));
 
-            let (phi, w_phi) = (potentials(phi), potentials(w_phi));
-            let name = format!("{volume:?} {n}");
-            let mut local = Local::default();
-            let at = NodeState::new(&shape, &x, &phi);
-            law.tangent(&at, &mut local);
-            close_flat(&format!("{name} tangent"), &flat(&local), &plain);
-            let mut gradient = Local::default();
-            law.gradient(&at, &mut gradient);
-            close(
-                &format!("{name} energy"),
-                &[gradient.energy],
-                &[plain.value],
-            );
-            close(
-                &format!("{name} gradient"),
-                &flat(&gradient).gradient,
-                &plain.gradient,
-            );
-            let energy = law.energy(&at);
-            close(&format!("{name} energy"), &[energy], &[plain.value]);
-            let mut rate = Local::default();
-            law.third(&at.along(&w, &w_phi), &mut local, &mut rate);
-            close_flat(&format!("{name} third, plain"), &flat(&local), &plain);
-            close_flat(&format!("{name} third, along"), &flat(&rate), &along);
-        }
+        let (phi, w_phi) = (potentials(phi), potentials(w_phi));
+        let name = format!("{volume:?} {n}");
+        let mut local = Local::default();
+        let at = NodeState::new(&shape, &x, &phi);
+        law.tangent(&at, &mut local);
+        close_flat(&format!("{name} tangent"), &flat(&local), &plain);
+        let mut gradient = Local::default();
+        law.gradient(&at, &mut gradient);
+        close(
+            &format!("{name} energy"),
+            &[gradient.energy],
+            &[plain.value],
+        );
+        close(
+            &format!("{name} gradient"),
+            &flat(&gradient).gradient,
+            &plain.gradient,
+        );
+        let energy = law.energy(&at);
+        close(&format!("{name} energy"), &[energy], &[plain.value]);
+        let mut rate = Local::default();
+        law.third(&at.along(&w, &w_phi), &mut local, &mut rate);
+        close_flat(&format!("{name} third, plain"), &flat(&local), &plain);
+        close_flat(&format!("{name} third, along"), &flat(&rate), &along);
     }
 }
 

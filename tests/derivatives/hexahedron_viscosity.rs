@@ -1,7 +1,7 @@
 //! Viscous forces of the hexahedron against a naive oracle.
 
 use crate::common::random::Random;
-use crate::hexahedron::{STATES, close, largest, list, oracle};
+use crate::hexahedron::{close, largest, list, oracle};
 use crate::naive_hexahedron::{
     M, contracted, deformation, determinant, gauss, inverse, product, state, transposed,
 };
@@ -40,58 +40,56 @@ fn blocks(blocks: &[[Matrix; 8]; 8]) -> Vec<f64> {
 fn viscous_forces_and_their_derivatives() {
     let mut random = Random(11);
     let law = Viscosity { viscosity: 1.7 };
-    for _ in 0..STATES {
-        let (nodes, x, _) = state(&mut random);
-        let [v, y]: [[Vector; 8]; 2] =
-            std::array::from_fn(|_| std::array::from_fn(|_| random.vector()));
-        let shape = ElementGeometry::new(&nodes).unwrap();
-        let points = gauss(&nodes);
+    let (nodes, x, _) = state(&mut random);
+    let [v, y]: [[Vector; 8]; 2] =
+        std::array::from_fn(|_| std::array::from_fn(|_| random.vector()));
+    let shape = ElementGeometry::new(&nodes).unwrap();
+    let points = gauss(&nodes);
 
-        // All derivatives of y·f by (x, v); y is a direction, so the plain forces come from unit directions.
-        let p = [list(&x), list(&v)].concat();
-        let (s, _) = oracle(&p, &[0.0; 48], |p| {
-            let y: Vec<_> = list(&y).into_iter().map(|y| p[0] * 0.0 + y).collect();
-            viscous_work(&points, law.viscosity, &p[..24], &p[24..], &y)
-        });
-        let mut out = ViscousContraction::default();
-        law.contraction(&shape, &x, &v, &y, &mut out);
-        close("s", &[out.value], &[s.value]);
-        close("∂s/∂x", &list(&out.by_place), &s.gradient[..24]);
-        close("∂s/∂v", &list(&out.by_velocity), &s.gradient[24..]);
-        let part = |rows: usize, columns: usize| -> Vec<f64> {
-            let row = |r: usize| s.hessian[rows + r][columns..columns + 24].to_vec();
-            (0..24).flat_map(row).collect()
-        };
-        close("∂²s/∂x∂x", &blocks(&out.place_place), &part(0, 0));
-        close("∂²s/∂x∂v", &blocks(&out.place_velocity), &part(0, 24));
-        assert!(largest(&part(24, 24)) < 1e-12, "s is linear in v");
+    // All derivatives of y·f by (x, v); y is a direction, so the plain forces come from unit directions.
+    let p = [list(&x), list(&v)].concat();
+    let (s, _) = oracle(&p, &[0.0; 48], |p| {
+        let y: Vec<_> = list(&y).into_iter().map(|y| p[0] * 0.0 + y).collect();
+        viscous_work(&points, law.viscosity, &p[..24], &p[24..], &y)
+    });
+    let mut out = ViscousContraction::default();
+    law.contraction(&shape, &x, &v, &y, &mut out);
+    close("s", &[out.value], &[s.value]);
+    close("∂s/∂x", &list(&out.by_place), &s.gradient[..24]);
+    close("∂s/∂v", &list(&out.by_velocity), &s.gradient[24..]);
+    let part = |rows: usize, columns: usize| -> Vec<f64> {
+        let row = |r: usize| s.hessian[rows + r][columns..columns + 24].to_vec();
+        (0..24).flat_map(row).collect()
+    };
+    close("∂²s/∂x∂x", &blocks(&out.place_place), &part(0, 0));
+    close("∂²s/∂x∂v", &blocks(&out.place_velocity), &part(0, 24));
+    assert!(largest(&part(24, 24)) < 1e-12, "s is linear in v");
 
-        // f_i by unit directions, its derivatives by dual numbers.
-        let mut local = ViscousLocal::default();
-        law.tangent(&shape, &x, &v, &mut local);
-        let mut forces = [Vector::zeros(); 8];
-        law.forces(&shape, &x, &v, &mut forces);
-        let derivative = |row: usize, column: usize| -> Dual64 {
-            let number = |k: usize| Dual64::new(p[k], f64::from(k == column));
-            let arguments: Vec<_> = (0..48).map(number).collect();
-            let unit: Vec<_> = (0..24).map(|k| Dual64::from(f64::from(k == row))).collect();
-            let (x, v) = arguments.split_at(24);
-            viscous_work(&points, law.viscosity, x, v, &unit)
-        };
-        let values: Vec<f64> = (0..24).map(|r| derivative(r, 0).re).collect();
-        close("f", &list(&forces), &values);
-        close("f of the tangent", &list(&local.forces), &values);
-        let slopes = |from: usize| -> Vec<f64> {
-            let entry = |k: usize| derivative(k / 24, from + k % 24).eps;
-            (0..24 * 24).map(entry).collect()
-        };
-        close("∂f/∂x", &blocks(&local.by_place), &slopes(0));
-        close("∂f/∂v", &blocks(&local.by_velocity), &slopes(24));
+    // f_i by unit directions, its derivatives by dual numbers.
+    let mut local = ViscousLocal::default();
+    law.tangent(&shape, &x, &v, &mut local);
+    let mut forces = [Vector::zeros(); 8];
+    law.forces(&shape, &x, &v, &mut forces);
+    let derivative = |row: usize, column: usize| -> Dual64 {
+        let number = |k: usize| Dual64::new(p[k], f64::from(k == column));
+        let arguments: Vec<_> = (0..48).map(number).collect();
+        let unit: Vec<_> = (0..24).map(|k| Dual64::from(f64::from(k == row))).collect();
+        let (x, v) = arguments.split_at(24);
+        viscous_work(&points, law.viscosity, x, v, &unit)
+    };
+    let values: Vec<f64> = (0..24).map(|r| derivative(r, 0).re).collect();
+    close("f", &list(&forces), &values);
+    close("f of the tangent", &list(&local.forces), &values);
+    let slopes = |from: usize| -> Vec<f64> {
+        let entry = |k: usize| derivative(k / 24, from + k % 24).eps;
+        (0..24 * 24).map(entry).collect()
+    };
+    close("∂f/∂x", &blocks(&local.by_place), &slopes(0));
+    close("∂f/∂v", &blocks(&local.by_velocity), &slopes(24));
 
-        let power: f64 = forces.iter().zip(&v).map(|(f, v)| f.dot(v)).sum();
-        close("power", &[law.power(&shape, &x, &v)], &[power]);
-        assert!(power > 0.0);
-    }
+    let power: f64 = forces.iter().zip(&v).map(|(f, v)| f.dot(v)).sum();
+    close("power", &[law.power(&shape, &x, &v)], &[power]);
+    assert!(power > 0.0);
 }
 
 #[test]

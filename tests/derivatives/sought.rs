@@ -14,7 +14,7 @@ use std::collections::HashMap;
 
 pub(crate) const H: f64 = 10.0;
 
-/// Systems with free parameters, of bodies and of finite elements, in both coordinates, with and without a free duration.
+/// Systems with free parameters: of bodies in both coordinates, with and without a free duration, of finite elements with one of the two.
 fn variants() -> Vec<(System, Control)> {
     let both = [Coordinates::Reduced, Coordinates::Redundant];
     let cases = both.into_iter().flat_map(|c| [(c, false), (c, true)]);
@@ -27,19 +27,16 @@ fn variants() -> Vec<(System, Control)> {
         (system, control)
     };
     let of_elements =
-        [elements(), relaxing(), by_laws()]
-            .into_iter()
-            .flat_map(|(system, parameters)| {
-                [false, true].map(|is_free| {
-                    let control = Control {
-                        parameters: parameters.clone(),
-                        start: joints(&[(0, 0.05)]),
-                        goal: BoundaryState::Free,
-                        ..problem(&system, is_free, None)
-                    };
-                    (system.clone(), control)
-                })
-            });
+        [(elements(), true), (relaxing(), false), (by_laws(), true)].map(|(of, is_free)| {
+            let (system, parameters) = of;
+            let control = Control {
+                parameters,
+                start: joints(&[(0, 0.05)]),
+                goal: BoundaryState::Free,
+                ..problem(&system, is_free, None)
+            };
+            (system, control)
+        });
     let (system, parameters) = wired();
     let of_circuits = [false, true].map(|is_free| Control {
         parameters: parameters.clone(),
@@ -62,7 +59,7 @@ fn variants() -> Vec<(System, Control)> {
         ..problem(&system, is_free, None)
     });
     let of_lengths = of_lengths.map(|control| (system.clone(), control));
-    let others = of_elements.chain(of_circuits);
+    let others = of_elements.into_iter().chain(of_circuits);
     let others = others.chain(crowded).chain(of_lengths);
     cases.map(of).chain(others).collect()
 }
