@@ -61,7 +61,7 @@ fn compare(entry: &Value, model: &Model, discrete: &DiscreteTrajectory, scale: f
 fn a_voltage_step_is_the_reference() {
     for entry in reference("caseD")["dynamic"].as_array().unwrap() {
         let coarse = numbers(&entry["mesh"]["elements"])[0] < 3.0;
-        let steps = if coarse { 200 } else { 20 };
+        let steps = if coarse { 100 } else { 10 };
         let h = entry["h"].as_f64().unwrap() * 1e3;
         let (model, discrete) = run(stack(entry), h, steps, &[3e5]);
         let scale = if coarse { 3.0 } else { 1.0 };
@@ -268,7 +268,7 @@ fn large(viscosity: Option<f64>, solving: Solving) -> DiscreteTrajectory {
     let mut solid = block(mesh, rubber);
     let lift = |x: &Vector3<f64>| Vector3::new(1e-3 * x.z * x.z, 0.0, 0.01 * x.z);
     solid.velocities = solid.mesh.nodes.iter().map(lift).collect();
-    released(solid, solving, 0.5, 4)
+    released(solid, solving, 0.5, 2)
 }
 
 #[test]
@@ -298,8 +298,8 @@ fn factors_in_single_precision_give_the_motion_of_those_in_double_precision() {
             let parts = a.iter().zip(b).map(|(a, b)| (a - b).abs());
             parts.fold(0.0, f64::max)
         };
-        assert!(largest(&double.z[4], &double.z[0]) > 0.5);
-        let apart = largest(&single.z[4], &double.z[4]);
+        assert!(largest(&double.z[2], &double.z[0]) > 0.5);
+        let apart = largest(&single.z[2], &double.z[2]);
         assert!(apart < 1e-7, "{apart:e} mm");
     }
 }

@@ -2,7 +2,9 @@
 
 use crate::common::solid::{VOLTAGE, clamped, crooked, placed, system};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
-use proboscis::dynamics::{DiscreteTrajectory, Start, Stepper, energies, observations, simulate};
+use proboscis::dynamics::{
+    DiscreteTrajectory, Newton, Solving, Start, Stepper, energies, observations, simulate,
+};
 use proboscis::mesh::Mesh;
 use proboscis::model::Model;
 use proboscis::model::system::{ElectricConstants, Electrode, Solid};
@@ -292,7 +294,12 @@ fn the_energy_of_an_elastic_block_does_not_drift() {
     let steps = 10_000;
     let z = model.coordinates_at(&[]);
     let momentum = vec![0.0; z.len()];
-    let mut stepper = Stepper::new(&model, &z, &momentum, Default::default());
+    // The steps are the same to rounding, and cost a fraction.
+    let solving = Solving {
+        newton: Newton::Modified,
+        ..Solving::default()
+    };
+    let mut stepper = Stepper::new(&model, &z, &momentum, solving);
     let mut before = stepper.instant().clone();
     let mut errors = Vec::new();
     let (mut kinetic, mut first) = (0.0_f64, None);

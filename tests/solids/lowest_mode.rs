@@ -91,7 +91,7 @@ fn the_lowest_mode_of_a_mesh_tells_what_the_inertia_tells() {
     assert_eq!(cubes.mesh.box_planes(), None);
     tally.compare(system(vec![cubes.clone()]), 2e6, 14);
     let mut random = Random(11);
-    for _ in 0..2 {
+    for _ in 0..1 {
         let layers = scattered(layered(&mut random), PART);
         tally.compare(system(vec![layers]), 3e6, 14);
     }
@@ -142,7 +142,7 @@ fn a_column_on_a_mesh_is_unstable_by_its_lowest_mode() {
 #[test]
 fn the_lowest_mode_of_nearly_incompressible_columns_tells_what_the_inertia_tells() {
     let mut on_meshes = 0;
-    for ratio in [10.0, 100.0, 1e3, 1e4] {
+    for ratio in [10.0, 1e4] {
         let mut solid = cubes(3, rubber(0.4, None));
         solid.element = ElementKind::Hex8Q1P0;
         for material in &mut solid.materials {

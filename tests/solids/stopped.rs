@@ -81,7 +81,7 @@ fn an_equilibrium_stops_within_an_evaluation() {
     assert!(apart(&whole.z, &start) > 1e-2);
     assert!(asked > 5 * stretches, "{asked}");
     let mut stops = 0;
-    for allowed in (0..asked).step_by(asked as usize / 11).chain([asked - 1]) {
+    for allowed in (0..asked).step_by(asked as usize / 7).chain([asked - 1]) {
         let (stopped, _) = within(allowed, rest);
         match stopped {
             Err(EquilibriumError::Stopped(_)) => stops += 1,
