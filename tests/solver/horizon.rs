@@ -1,7 +1,7 @@
 //! Systems of optimal control with random numbers, dense and by entries.
 
 use crate::matrices::Random;
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::DMatrix;
 use proboscis::kkt::{Inertia, Unknown};
 
 /// A symmetric matrix by entries of the lower triangle, some places listed twice.
@@ -68,7 +68,7 @@ impl System {
 
     /// By eigenvalues; those below 1e-13 of the largest are zero.
     pub(crate) fn inertia(&self) -> Inertia {
-        let eigenvalues = SymmetricEigen::new(self.dense()).eigenvalues;
+        let eigenvalues = self.dense().symmetric_eigenvalues();
         let zero = 1e-13 * eigenvalues.amax();
         Inertia {
             negative: eigenvalues.iter().filter(|&&e| e < -zero).count(),

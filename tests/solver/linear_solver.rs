@@ -177,7 +177,7 @@ fn systems_of_restoration_are_factored_as_a_whole_and_a_note_says_when_that_was_
 fn random_goals_have_the_same_ends_as_with_mumps() {
     let mut goals = Goals::new(5);
     let (mut solved, mut apart) = (0, 0);
-    for round in 0..20 {
+    for round in 0..12 {
         let kind = [Kind::Rest, Kind::Tip][round % 2];
         let duration = [0.6, 0.6, 0.3][round % 3];
         let goal = goals.draw(kind).json;
@@ -204,7 +204,7 @@ fn random_goals_have_the_same_ends_as_with_mumps() {
         }
     }
     // A solve that goes back and forth for long may part at the last digits of a step.
-    assert!(solved >= 16 && apart <= 2, "{solved}, {apart}");
+    assert!(solved >= 10 && apart <= 1, "{solved}, {apart}");
 }
 
 /// The pattern is analysed once in a thread, and a solve with a kept one is the same to the last bit.
