@@ -155,7 +155,7 @@ fn goals() -> Vec<(PathBuf, Vec<String>)> {
     }
     // Long enough that a thread that is alone evaluates both halves at once.
     let goal = goals.draw(Kind::Rest).json;
-    let changes = ["control.intervals=400", "control.solver.max_iterations=4"].map(str::to_owned);
+    let changes = ["control.intervals=120", "control.solver.max_iterations=4"].map(str::to_owned);
     let goal = format!("control.goal={goal}");
     all.push((
         random_goals::trunk(),

@@ -164,7 +164,7 @@ fn signal(random: &mut Random, largest: f64) -> Signal {
 fn steps_by_a_tolerance_keep_it_under_functions_of_time() {
     let (mut above, mut count, mut worst) = (Vec::new(), 0, 0.0_f64);
     let mut unconfirmed = 0;
-    seeds(1000, 40, &[1_795_623_191], |seed| {
+    seeds(1000, 30, &[1_795_623_191], |seed| {
         let parts = Parts {
             viscosity: seed % 2 == 0,
             ball_joints: seed % 3 == 0,

@@ -367,7 +367,7 @@ fn bytes_of_a_byte(intervals: usize, voltage: &str) -> f64 {
 
 fn reading_takes_the_memory_that_is_counted_on() {
     for voltage in ["0.25", "\"0.25 kV\""] {
-        let bytes = bytes_of_a_byte(400_000, voltage);
+        let bytes = bytes_of_a_byte(150_000, voltage);
         // The text itself is there, and what the scene takes, whatever the length of the table.
         assert!(bytes > 1.0 && bytes < 17.0, "{voltage}: {bytes}");
     }

@@ -216,11 +216,6 @@ impl Long {
 }
 
 #[test]
-fn the_undamped_trunk_keeps_its_energy_over_twenty_thousand_steps() {
-    energy_of_the_trunk(100, 200).check(1e-2);
-}
-
-#[test]
 #[ignore = "long: run by make studies"]
 fn the_undamped_trunk_keeps_its_energy_over_a_million_steps() {
     let long = energy_of_the_trunk(200, 5000);
@@ -302,8 +297,8 @@ fn check_violations(list: &[[f64; 2]]) -> f64 {
 }
 
 #[test]
-fn constraints_stay_at_rounding_over_twenty_thousand_steps() {
-    check_violations(&violations(20, 1000));
+fn constraints_stay_at_rounding_over_eight_thousand_steps() {
+    check_violations(&violations(20, 400));
 }
 
 #[test]
