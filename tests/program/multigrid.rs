@@ -57,6 +57,10 @@ fn a_scene_without_grids_is_refused() {
     assert!(said.contains("elastic blocks"), "{said}");
 }
 
+/// A voltage that hardly moves the block, so that a step takes one iteration.
+#[cfg(unix)]
+const STILL: &str = "simulate.voltages={\"block.stack\":\"1 V\"}";
+
 /// Couplings of 10⁶ unknowns take several seconds to count, which nobody waits for behind a stop.
 #[cfg(unix)]
 #[test]
@@ -69,7 +73,7 @@ fn effects_of_a_large_block_are_not_counted_behind_a_stop() {
         let mut child = Command::new(assert_cmd::cargo::cargo_bin("proboscis"))
             .current_dir(folder.path())
             .args(["simulate", &path, "--set", &elements, "-o", to])
-            .args(["--set", &duration])
+            .args(["--set", &duration, "--set", STILL])
             .stdout(Stdio::null())
             .stderr(Stdio::null())
             .spawn_listening()

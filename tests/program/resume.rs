@@ -140,7 +140,7 @@ fn a_killed_simulation_goes_on_from_its_last_steps() {
         folder,
         &[
             &words[..],
-            &["-o", "out", "--from", "out", "--max-seconds", "5"],
+            &["-o", "out", "--from", "out", "--max-seconds", "2"],
         ]
         .concat(),
     );
