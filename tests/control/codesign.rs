@@ -15,7 +15,7 @@ use std::path::Path;
 fn motions(changes: &[&str]) -> Motions {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/codesign_trunk.json");
     // Few intervals: the same derivatives and conditions in less time.
-    let coarse = ["control.intervals=12"];
+    let coarse = ["control.intervals=8"];
     let changes = coarse.iter().chain(changes).map(|one| one.to_string());
     let changes: Vec<String> = changes.collect();
     match read_problem(&path, &changes).expect("a kept problem").task {

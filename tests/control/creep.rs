@@ -19,7 +19,7 @@ use std::path::Path;
 fn the_trunk_of_rubber_that_creeps_reaches_its_goal() {
     let solve = |name: &str| {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("problems/{name}.json"));
-        let loaded = read_problem(&path, &[]).unwrap();
+        let loaded = read_problem(&path, &["control.intervals=60".to_owned()]).unwrap();
         let Task::Control(control) = loaded.task else {
             panic!("a problem of control");
         };

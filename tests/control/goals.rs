@@ -99,7 +99,7 @@ fn a_goal_that_is_just_reached_in_time_is_found_from_the_shortest_motion() {
     let changes = [
         r#"control.goal={"markers":{"tip":[0.13047225366716458,0.23968469529064168,0.09329478813017689]}}"#,
         "control.duration=0.19 s",
-        "control.solver.max_iterations=200",
+        "control.solver.max_iterations=80",
     ]
     .map(str::to_owned);
     let loaded = read_problem(&trunk(), &changes).expect("a goal");

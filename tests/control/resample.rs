@@ -99,12 +99,12 @@ fn norm(list: impl Iterator<Item = f64>) -> f64 {
 #[test]
 fn what_is_carried_to_a_finer_grid_is_close_to_the_solution_there() {
     for coordinates in [Coordinates::Reduced, Coordinates::Redundant] {
-        let coarse = solve(&problem(coordinates, 40));
-        let control = problem(coordinates, 80);
+        let coarse = solve(&problem(coordinates, 25));
+        let control = problem(coordinates, 50);
         let fine = solve(&control);
         let (initial, variables, rows, count) = carried(&control, &coarse);
-        assert_eq!(initial.discrete.intervals(), 80);
-        assert!((initial.h - 1.5).abs() < 1e-3, "{}", initial.h);
+        assert_eq!(initial.discrete.intervals(), 50);
+        assert!((initial.h - 2.4).abs() < 1e-3, "{}", initial.h);
 
         let costates = initial.costates.expect("the coarse optimum has costates");
         let known = fine.motion.costates.as_ref().unwrap();
@@ -140,7 +140,7 @@ fn what_is_carried_to_a_finer_grid_is_close_to_the_solution_there() {
                 continue;
             }
             let inner = |z: &[Vec<f64>]| {
-                z[1..80]
+                z[1..50]
                     .iter()
                     .flat_map(|z| z[range.clone()].to_vec())
                     .collect::<Vec<_>>()
