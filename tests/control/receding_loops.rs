@@ -3,6 +3,7 @@
 use crate::common::receding::{horizon, problem};
 use crate::common::robot::Robot;
 use proboscis::control::problem::{Control, Regulator};
+use proboscis::dynamics::Independent;
 use proboscis::model::{Coordinates, Model, Role, System};
 use proboscis::workflow::receding::{Horizon, RecedingHorizon, Source};
 
@@ -90,9 +91,11 @@ fn a_pushed_loop_comes_to_its_goal_by_optimal_inputs() {
         assert_eq!(answer.source, Source::Plan, "{k}");
         let inputs = answer.inputs.to_vec();
         controller.prepare();
-        let (best, status) = horizon.optimum(k, &state).unwrap();
-        assert!(status.is_solved());
-        differences.push((inputs[0].powi(2) - best[0].powi(2)).abs() / 9e6);
+        if k < push + 8 {
+            let (best, status) = horizon.optimum(k, &state).unwrap();
+            assert!(status.is_solved());
+            differences.push((inputs[0].powi(2) - best[0].powi(2)).abs() / 9e6);
+        }
         robot.go(law.h, &inputs);
         if k + 1 == push {
             robot.momentum[coordinates[0]] += 300.0;
