@@ -1,34 +1,46 @@
 //! Viscous forces of the hexahedron against a naive oracle.
 
 use crate::common::random::Random;
-use crate::hexahedron::{close, largest, list, oracle};
+use crate::hexahedron::{STATES, close, largest, list};
 use crate::naive_hexahedron::{
-    M, contracted, deformation, determinant, gauss, inverse, product, state, transposed,
+    M, contracted, deformation, determinant, gauss, inverse, matrix, of_deformation, product,
+    state, transposed,
 };
+use crate::oracle::{Number, oracle_of_sum};
 use num_dual::{Dual64, DualNum};
 use proboscis::element::{ElementGeometry, Viscosity, ViscousContraction, ViscousLocal};
 use proboscis::math::{Matrix, Vector};
 
 // Viscosity.
 
-/// Σ y_i·f_i = ∫ P_vis : Ẏ dV with P_vis = ½ J η (F⁻ᵀ Ḟᵀ F⁻ᵀ + Ḟ C⁻¹) of docs/theory.md, 2.3; arguments x, v.
-fn viscous_work<D: DualNum<f64> + Copy>(
+/// w P_vis of P_vis = ½ J η (F⁻ᵀ Ḟᵀ F⁻ᵀ + Ḟ C⁻¹) of docs/theory.md, 2.3.
+fn stress<D: DualNum<f64> + Copy>(factor: f64, f: M<D>, rate: M<D>) -> M<D> {
+    let inverse_c = inverse(product(transposed(f), f));
+    let t = transposed(inverse(f));
+    let first = product(product(t, transposed(rate)), t);
+    let second = product(rate, inverse_c);
+    let scale = determinant(f) * (0.5 * factor);
+    std::array::from_fn(|a| std::array::from_fn(|m| (first[a][m] + second[a][m]) * scale))
+}
+
+/// The forces f_i = ∫ P_vis G_i dV of places x and velocities v.
+fn viscous_forces<D: DualNum<f64> + Copy>(
     points: &[(f64, [[f64; 3]; 8])],
     eta: f64,
     x: &[D],
     v: &[D],
-    y: &[D],
-) -> D {
-    points.iter().fold(D::zero(), |work, (w, gradients)| {
-        let [f, rate, virtual_rate] = [x, v, y].map(|p| deformation(p, gradients));
-        let inverse_c = inverse(product(transposed(f), f));
-        let t = transposed(inverse(f));
-        let first = product(product(t, transposed(rate)), t);
-        let second = product(rate, inverse_c);
-        let stress: M<D> =
-            std::array::from_fn(|a| std::array::from_fn(|m| first[a][m] + second[a][m]));
-        work + determinant(f) * contracted(stress, virtual_rate) * (0.5 * eta * w)
-    })
+) -> Vec<D> {
+    let mut forces = vec![D::zero(); 24];
+    for (w, gradients) in points {
+        let [f, rate] = [x, v].map(|p| deformation(p, gradients));
+        let stress = stress(eta * w, f, rate);
+        for (k, force) in forces.iter_mut().enumerate() {
+            for (entry, gradient) in stress[k % 3].iter().zip(gradients[k / 3]) {
+                *force += *entry * gradient;
+            }
+        }
+    }
+    forces
 }
 
 fn blocks(blocks: &[[Matrix; 8]; 8]) -> Vec<f64> {
@@ -39,18 +51,30 @@ fn blocks(blocks: &[[Matrix; 8]; 8]) -> Vec<f64> {
 #[test]
 fn viscous_forces_and_their_derivatives() {
     let mut random = Random(11);
+    (0..STATES).for_each(|_| compare_at_random(&mut random));
+}
+
+fn compare_at_random(random: &mut Random) {
     let law = Viscosity { viscosity: 1.7 };
-    let (nodes, x, _) = state(&mut random);
+    let (nodes, x, _) = state(random);
     let [v, y]: [[Vector; 8]; 2] =
         std::array::from_fn(|_| std::array::from_fn(|_| random.vector()));
     let shape = ElementGeometry::new(&nodes).unwrap();
     let points = gauss(&nodes);
 
-    // All derivatives of y·f by (x, v); y is a direction, so the plain forces come from unit directions.
+    // All derivatives of y·f by (x, v); y is a direction.
     let p = [list(&x), list(&v)].concat();
-    let (s, _) = oracle(&p, &[0.0; 48], |p| {
-        let y: Vec<_> = list(&y).into_iter().map(|y| p[0] * 0.0 + y).collect();
-        viscous_work(&points, law.viscosity, &p[..24], &p[24..], &y)
+    let own = |(_, gradients): &(f64, [[f64; 3]; 8])| {
+        [0, 24]
+            .map(|first| of_deformation(gradients, first))
+            .concat()
+    };
+    let combinations: Vec<_> = points.iter().map(own).collect();
+    let (s, _) = oracle_of_sum(&p, &[0.0; 48], &combinations, |k, q| {
+        let (w, gradients) = &points[k];
+        let virtual_rate = deformation(&list(&y), gradients).map(|row| row.map(Number::from));
+        let stress = stress(law.viscosity * w, matrix(q), matrix(&q[9..]));
+        contracted(stress, virtual_rate)
     });
     let mut out = ViscousContraction::default();
     law.contraction(&shape, &x, &v, &y, &mut out);
@@ -65,23 +89,22 @@ fn viscous_forces_and_their_derivatives() {
     close("∂²s/∂x∂v", &blocks(&out.place_velocity), &part(0, 24));
     assert!(largest(&part(24, 24)) < 1e-12, "s is linear in v");
 
-    // f_i by unit directions, its derivatives by dual numbers.
+    // f_i, its derivatives by dual numbers.
     let mut local = ViscousLocal::default();
     law.tangent(&shape, &x, &v, &mut local);
     let mut forces = [Vector::zeros(); 8];
     law.forces(&shape, &x, &v, &mut forces);
-    let derivative = |row: usize, column: usize| -> Dual64 {
+    let along = |column: usize| -> Vec<Dual64> {
         let number = |k: usize| Dual64::new(p[k], f64::from(k == column));
         let arguments: Vec<_> = (0..48).map(number).collect();
-        let unit: Vec<_> = (0..24).map(|k| Dual64::from(f64::from(k == row))).collect();
-        let (x, v) = arguments.split_at(24);
-        viscous_work(&points, law.viscosity, x, v, &unit)
+        viscous_forces(&points, law.viscosity, &arguments[..24], &arguments[24..])
     };
-    let values: Vec<f64> = (0..24).map(|r| derivative(r, 0).re).collect();
+    let columns: Vec<Vec<Dual64>> = (0..48).map(along).collect();
+    let values: Vec<f64> = columns[0].iter().map(|force| force.re).collect();
     close("f", &list(&forces), &values);
     close("f of the tangent", &list(&local.forces), &values);
     let slopes = |from: usize| -> Vec<f64> {
-        let entry = |k: usize| derivative(k / 24, from + k % 24).eps;
+        let entry = |k: usize| columns[from + k % 24][k / 24].eps;
         (0..24 * 24).map(entry).collect()
     };
     close("∂f/∂x", &blocks(&local.by_place), &slopes(0));

@@ -24,6 +24,7 @@ mod linear_steps;
 mod naive_formulas;
 mod naive_hexahedron;
 mod naive_sources;
+mod oracle;
 mod sought;
 mod sought_laws;
 mod sought_limits;

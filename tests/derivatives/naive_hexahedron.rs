@@ -1,6 +1,7 @@
 //! A hexahedron by textbook formulas with loops over dual numbers.
 
 use crate::common::random::Random;
+use crate::oracle::{Combination, Flat, Number, added, oracle_of_outer, oracle_of_sum};
 use num_dual::DualNum;
 use proboscis::element::{Dielectric, Volume};
 use proboscis::math::{Matrix, Vector};
@@ -111,6 +112,17 @@ pub(crate) fn deformation<D: DualNum<f64> + Copy>(p: &[D], gradients: &[[f64; 3]
     })
 }
 
+/// The nine entries of F of coordinates that begin at a place among all arguments.
+pub(crate) fn of_deformation(gradients: &[[f64; 3]; 8], first: usize) -> Vec<Combination> {
+    let entry = |k: usize| (0..8).map(move |i| (first + 3 * i + k / 3, gradients[i][k % 3]));
+    (0..9).map(|k| entry(k).collect()).collect()
+}
+
+/// A matrix of its entries, row by row.
+pub(crate) fn matrix<D: Copy>(q: &[D]) -> M<D> {
+    std::array::from_fn(|a| std::array::from_fn(|m| q[3 * a + m]))
+}
+
 /// The energy of docs/theory.md, 2.1 through C and C⁻¹, arguments: 24 coordinates, then 8 potentials.
 pub(crate) struct Naive {
     pub(crate) mu: f64,
@@ -123,34 +135,75 @@ pub(crate) struct Naive {
 impl Naive {
     pub(crate) fn energy<D: DualNum<f64> + Copy>(&self, p: &[D]) -> D {
         let mut energy = D::zero();
-        let mut volume = 0.0;
         let mut deformed = D::zero();
         for (w, gradients) in &self.points {
             let f = deformation(p, gradients);
-            let c = product(transposed(f), f);
-            let j = determinant(f);
-            volume += w;
-            deformed += j * *w;
-            let mut density =
-                (c[0][0] + c[1][1] + c[2][2] - 3.0) * (0.5 * self.mu) - j.ln() * self.mu;
-            if self.volume == Volume::Pointwise {
-                density += j.ln().powi(2) * (0.5 * self.lambda);
-            }
-            if let Some(k) = self.electric {
-                let e: [D; 3] = std::array::from_fn(|m| {
+            deformed += determinant(f) * *w;
+            let e = self.electric.map(|_| {
+                std::array::from_fn(|m| {
                     (0..8).fold(D::zero(), |sum, i| sum - p[24 + i] * gradients[i][m])
-                });
-                let square: M<D> = std::array::from_fn(|a| std::array::from_fn(|b| e[a] * e[b]));
-                density += (square[0][0] + square[1][1] + square[2][2]) * k.c1
-                    + contracted(c, square) * k.c2
-                    - j * contracted(inverse(c), square) * (0.5 * k.permittivity);
-            }
-            energy += density * *w;
+                })
+            });
+            energy += self.density(f, e) * *w;
         }
         if self.volume == Volume::Mean {
-            energy += (deformed / volume).ln().powi(2) * (0.5 * self.lambda * volume);
+            energy += self.of_volume(deformed);
         }
         energy
+    }
+
+    /// Energy per volume of F and E, without that of a mean dilatation.
+    fn density<D: DualNum<f64> + Copy>(&self, f: M<D>, e: Option<[D; 3]>) -> D {
+        let c = product(transposed(f), f);
+        let j = determinant(f);
+        let mut density = (c[0][0] + c[1][1] + c[2][2] - 3.0) * (0.5 * self.mu) - j.ln() * self.mu;
+        if self.volume == Volume::Pointwise {
+            density += j.ln().powi(2) * (0.5 * self.lambda);
+        }
+        if let Some((k, e)) = self.electric.zip(e) {
+            let square: M<D> = std::array::from_fn(|a| std::array::from_fn(|b| e[a] * e[b]));
+            density += (square[0][0] + square[1][1] + square[2][2]) * k.c1
+                + contracted(c, square) * k.c2
+                - j * contracted(inverse(c), square) * (0.5 * k.permittivity);
+        }
+        density
+    }
+
+    /// Energy of the mean dilatation of a deformed volume.
+    fn of_volume<D: DualNum<f64> + Copy>(&self, deformed: D) -> D {
+        let volume: f64 = self.points.iter().map(|(w, _)| w).sum();
+        (deformed / volume).ln().powi(2) * (0.5 * self.lambda * volume)
+    }
+
+    /// Derivatives of the energy, with a further one per volume, at `p` along `w`.
+    pub(crate) fn derivatives(
+        &self,
+        p: &[f64],
+        w: &[f64],
+        further: impl Fn(M<Number>) -> Number,
+    ) -> (Flat, Flat) {
+        let field = |gradients: &[[f64; 3]; 8], m: usize| -> Combination {
+            (0..8).map(|i| (24 + i, -gradients[i][m])).collect()
+        };
+        let own = |(_, gradients): &(f64, [[f64; 3]; 8])| {
+            let mut own = of_deformation(gradients, 0);
+            if self.electric.is_some() {
+                own.extend((0..3).map(|m| field(gradients, m)));
+            }
+            own
+        };
+        let combinations: Vec<_> = self.points.iter().map(own).collect();
+        let sum = oracle_of_sum(p, w, &combinations, |k, q| {
+            let e = self.electric.map(|_| [q[9], q[10], q[11]]);
+            (self.density(matrix(q), e) + further(matrix(q))) * self.points[k].0
+        });
+        if self.volume == Volume::Pointwise {
+            return sum;
+        }
+        let deformed = oracle_of_sum(p, w, &combinations, |k, q| {
+            determinant(matrix(q)) * self.points[k].0
+        });
+        added(sum, &oracle_of_outer(&deformed, |v| self.of_volume(v)))
     }
 }
 
