@@ -78,8 +78,7 @@ fn a_pushed_loop_comes_to_its_goal_by_optimal_inputs() {
     let mut z = model.reference_coordinates();
     let mut rates = vec![0.0; model.coordinate_count()];
     z[coordinates[0]] = start[0];
-    proboscis::dynamics::Independent::of(&model, coordinates.clone())
-        .close(&model, &mut z, &mut rates);
+    Independent::of(&model, coordinates.clone()).close(&model, &mut z, &mut rates);
     robot.z = z;
     let (push, last) = (12, 60);
     let mut differences = Vec::new();
