@@ -71,7 +71,7 @@ test-python: install-deps
 test-debian-13: install-deps
 	@$(CARGO) test --locked $(TEST_PACKAGES) --no-run
 	@export CARGO_BUILD_BUILD_DIR=$${CARGO_TARGET_DIR:-target} && export CARGO_TARGET_DIR=$$CARGO_BUILD_BUILD_DIR/debian-13 && \
-	  .ci/in-debian-13 $(CARGO) test --locked $(TEST_PACKAGES) --config 'profile.dev.package.proboscis.opt-level=0' --test solver --test units -- \
+	  .ci/in-debian-13 env -u CLIPPY_ARGS $(CARGO) test --locked $(TEST_PACKAGES) --config 'profile.dev.package.proboscis.opt-level=0' --test solver --test units -- \
 	  ipopt again:: linear_solver:: ma57_adapter:: mpi:: one_mumps:: stopped::a_limit sparse::threads --skip random_goals
 
 test-browser:
