@@ -63,9 +63,11 @@ pub(crate) fn ends_that_read(
     parameters: &[Parameter],
 ) -> Option<[Quantity; 2]> {
     let mut parameters = parameters.iter();
-    let is_read = parameters.any(|parameter| reads(quantity, parameter));
+    if !parameters.any(|parameter| reads(quantity, parameter)) {
+        return None;
+    }
     let [start, end] = [At::Start, At::End].map(|at| quantity.in_intervals(at));
-    Some([start?, end?]).filter(|_| is_read)
+    Some([start?, end?])
 }
 
 /// Puts limits of the instants that read a parameter in the place of the starts of intervals and the end of the last one: parameters belong to

@@ -37,12 +37,8 @@ pub enum Afterwards {
 impl Voltages {
     /// The same all the time.
     pub fn constant(row: &[f64]) -> Self {
-        Self::from(
-            row.iter()
-                .copied()
-                .map(Signal::Constant)
-                .collect::<Vec<_>>(),
-        )
+        let signals = row.iter().copied().map(Signal::Constant);
+        signals.collect::<Vec<_>>().into()
     }
 
     /// The solution that they are from.

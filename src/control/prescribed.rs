@@ -279,12 +279,10 @@ impl Duration {
 impl Control {
     /// The function of time that gives the input of a source, where one that is not constant does.
     pub fn function(&self, source: usize) -> Option<&Signal> {
-        let course = self.course.as_ref().filter(|_| self.is_given(source));
         let of_course = || {
-            course
-                .filter(|one| one.table.is_none())?
-                .signals
-                .get(source)
+            let course = self.course.as_ref().filter(|_| self.is_given(source))?;
+            let smooth = course.table.is_none().then_some(&course.signals);
+            smooth?.get(source)
         };
         let function = self.given.get(&source).or_else(of_course);
         function.filter(|function| !function.is_constant())

@@ -79,8 +79,8 @@ impl Grid {
 /// Returns true if instants lie at all corners.
 fn meeting(recording: &Recording, least: usize) -> (usize, bool) {
     let duration = recording.duration();
-    let corners: Vec<f64> = recording.voltages.switches();
-    let mut corners: Vec<f64> = corners.into_iter().filter(|t| *t < duration).collect();
+    let mut corners = recording.voltages.switches();
+    corners.retain(|t| *t < duration);
     let near = NEAR * duration / least as f64;
     corners.dedup_by(|next, before| *next - *before < near);
     let readings = recording.readings().map(|reading| reading.time);

@@ -283,6 +283,8 @@ pub(super) struct Inputs<'a> {
     delays: Vec<Option<Sought>>,
     /// Those that are said, with gains.
     pub(super) undelayed: Cow<'a, Voltages>,
+    /// Times in ms at which they have corners or jumps.
+    switches: Vec<f64>,
     /// Inputs before those that are said.
     before: Vec<f64>,
     /// Sources that act by their squares: voltages of electrodes without a resistor.
@@ -333,6 +335,7 @@ impl<'a> Inputs<'a> {
         let inputs = Self {
             by_squares: (0..before.len()).map(is_square).collect(),
             before,
+            switches: undelayed.switches(),
             undelayed,
             gains,
             delays,
@@ -377,14 +380,13 @@ impl<'a> Inputs<'a> {
 
     /// Times in ms at which inputs have corners or jumps.
     pub(super) fn corners(&self) -> Vec<f64> {
-        let said = self.undelayed.switches();
         let delays = self.delays.iter();
         let delays = in_order(delays.map(|one| one.map_or(0.0, |one| one.value)));
         let later = |&delay: &f64| {
             let begins = (delay > 0.0).then_some(delay);
             begins
                 .into_iter()
-                .chain(said.iter().map(move |t| t + delay))
+                .chain(self.switches.iter().map(move |t| t + delay))
         };
         in_order(delays.iter().flat_map(later))
     }
@@ -432,10 +434,9 @@ impl<'a> Inputs<'a> {
         let (h, middle) = (to - from, 0.5 * (from + to));
         let at = |time: f64| match time - delay {
             early if early < 0.0 => self.before[source],
-            said => self.undelayed.at(said)[source],
+            said => self.undelayed.signals[source].at(said),
         };
-        let said = self.undelayed.switches();
-        let corners = [0.0].into_iter().chain(said.iter().copied());
+        let corners = [0.0].into_iter().chain(self.switches.iter().copied());
         let (first, last) = (middle - h, middle + h);
         let inside = corners
             .map(|t| t + delay)

@@ -252,7 +252,7 @@ fn begin(
 /// Times in ms, in order, at which inputs or prescribed motions are not smooth.
 fn switches(inputs: &Voltages, model: &Model) -> Vec<f64> {
     let of_motions = model.prescribed.iter().flat_map(|one| one.motion.corners());
-    in_order(inputs.switches().iter().copied().chain(of_motions))
+    in_order(inputs.switches().into_iter().chain(of_motions))
 }
 
 /// The voltages of a task as the steps of its model ask for them.

@@ -227,15 +227,15 @@ impl MeasuredSpec {
     pub(in crate::files::problem) fn recorded(&self, at: &At<'_>) -> Result<Recorded> {
         let (key, name, make) = self.entry(at)?;
         let (along, about) = (self.along.is_some(), self.about.is_some());
+        let directed: &[&str] = &["marker", "reaction_force"];
         let beside = [
-            ("along", along, "a direction", "marker"),
-            ("about", about, "a direction", "reaction_torque"),
-            ("from", self.from.is_some(), "a plane", "clearance"),
+            ("along", along, "a direction", directed),
+            ("about", about, "a direction", &["reaction_torque"]),
+            ("from", self.from.is_some(), "a plane", &["clearance"]),
         ];
         for (other, is_written, found, of) in beside {
-            let is_of_it = key == of || (key == "reaction_force" && other == "along");
-            refuse!(if is_written && !is_of_it, at.key(other);
-                found found, expected format!("{found} of a {of:?} alone"));
+            refuse!(if is_written && !of.contains(&key), at.key(other);
+                found found, expected format!("{found} of a {:?} alone", of[0]));
         }
         let recorded = make(&Named {
             name,
