@@ -582,7 +582,7 @@ class Controller(TypedDict):
 
 
 Coordinates: TypeAlias = "Literal['reduced', 'redundant']"
-"""Coordinates in which a problem is solved; reduced where the joints form a tree, unless written."""
+"""Coordinates in which a problem is solved; reduced ones, unless written."""
 
 
 class CurrentCost(TypedDict):

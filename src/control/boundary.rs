@@ -93,7 +93,7 @@ impl BoundaryConditions {
         let system = &free_parameters::at_guess(system, control)?;
         let analysis = control.analysis(system, h0);
         let presolved = Presolved::new(system, &analysis);
-        let coordinates = Model::choose(&presolved.system, control.coordinates);
+        let coordinates = control.coordinates.unwrap_or(Coordinates::Reduced);
         let are_independent = coordinates.are_independent(&Graph::new(&presolved.system));
         let limits = limits_with_goal(system, control, !are_independent);
         let analysis = Analysis {

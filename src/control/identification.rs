@@ -27,7 +27,7 @@ pub struct Identification {
     pub candidates: Vec<Recording>,
     /// Length in ms of the steps of the first grid; `None`: by the times of the readings.
     pub step: Option<f64>,
-    /// `None`: reduced where the joints form a tree.
+    /// `None`: reduced.
     pub coordinates: Option<Coordinates>,
 }
 

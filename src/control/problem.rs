@@ -70,7 +70,7 @@ impl Task {
 pub struct AtRest {
     /// Voltages in V, one per source.
     pub voltages: Vec<f64>,
-    /// `None`: reduced where the joints form a tree.
+    /// `None`: reduced.
     pub coordinates: Option<Coordinates>,
     /// Response of Maxwell branches.
     pub response: Response,
@@ -92,7 +92,7 @@ pub struct Simulation {
     pub start: BoundaryState,
     /// Voltages over time.
     pub voltages: Voltages,
-    /// `None`: reduced where the joints form a tree.
+    /// `None`: reduced.
     pub coordinates: Option<Coordinates>,
     /// Solution of the equations of a step.
     pub solving: Solving,
@@ -185,7 +185,7 @@ pub struct Control {
     pub limits: Vec<Limit>,
     /// Places, orientations and coordinates on the way of the motion.
     pub waypoints: Vec<Waypoint>,
-    /// `None`: reduced where the joints form a tree.
+    /// `None`: reduced.
     pub coordinates: Option<Coordinates>,
     /// Initial guess of the solver.
     pub guess: Guess,

@@ -41,7 +41,7 @@ impl Coordinates {
 /// Request to a model: motion or equilibrium, coordinates, quantities.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Analysis {
-    /// Coordinates; without a choice reduced where the joints form a tree.
+    /// Coordinates; reduced ones without a choice.
     pub coordinates: Option<Coordinates>,
     /// Length of the intervals in ms, about; it scales multipliers.
     pub interval: f64,

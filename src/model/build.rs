@@ -37,7 +37,7 @@ impl Model {
     /// Builds the model of a system for intervals of about `h0` ms, in which `quantities` can be measured, any voltage may act
     /// and anything may be set in motion.
     ///
-    /// Without a choice the coordinates are reduced where the joints form a tree.
+    /// Without a choice the coordinates are reduced.
     ///
     /// # Errors
     /// A loop is closed in the reference only, or an element of a mesh is inverted.
@@ -77,7 +77,7 @@ impl Model {
         let reached = reached(&system, &analysis, &inputs);
         let solids = blocks(&mut presolved);
         let rest = &presolved.system;
-        let coordinates = Self::choose(rest, analysis.coordinates);
+        let coordinates = analysis.coordinates.unwrap_or(Coordinates::Reduced);
         let (graph, reference) = (Graph::new(rest), poses(rest));
         let mut vectors = Vectors::default();
         let mut variables = interval_variables(&inputs, &system, &analysis);
@@ -162,15 +162,6 @@ impl Model {
             JointReading::new(joint, coordinate, &reference)
         };
         system.joints.iter().enumerate().map(reading).collect()
-    }
-
-    /// The coordinates of a system: those asked for, or reduced where the joints form a tree.
-    pub fn choose(system: &System, coordinates: Option<Coordinates>) -> Coordinates {
-        let is_tree = || Graph::new(system).loops().is_empty();
-        coordinates.unwrap_or_else(|| match is_tree() {
-            true => Coordinates::Reduced,
-            false => Coordinates::Redundant,
-        })
     }
 }
 

@@ -5,7 +5,7 @@ use std::fmt;
 
 use crate::control::problem::Task;
 use crate::files::Loaded;
-use crate::model::{Coordinates, Model};
+use crate::model::{Coordinates, Graph};
 
 pub use crate::files::study::MeasureSpec as StudyMeasure;
 
@@ -149,7 +149,8 @@ pub fn available<'a>(
     });
     let open = points.clone().any(|point| match &point.task {
         Task::Simulate(task) => {
-            Model::choose(&point.system, task.coordinates) == Coordinates::Redundant
+            task.coordinates == Some(Coordinates::Redundant)
+                || !Graph::new(&point.system).loops().is_empty()
         }
         _ => false,
     });

@@ -155,7 +155,7 @@ impl Loop {
 
     fn angle(&self, h: f64, steps: usize) -> f64 {
         let model = Model::new(self.scene(), None, h, &[]).unwrap();
-        assert_eq!(model.coordinates, Coordinates::Redundant);
+        assert_eq!(model.coordinates, Coordinates::Reduced);
         let start = Start::at_rest(&model, at_reference(&model));
         let discrete = motion(&model, &start, h, steps, &[]);
         let seen = observations(&model, &discrete);

@@ -2,7 +2,7 @@
 
 use crate::closed_loop::{AXIAL, bar};
 use crate::common::{at_reference, bare, motion, richardson, spin};
-use crate::redundant_loops::{hinge, holds, left_out, model};
+use crate::redundant_loops::{hinge, holds, in_directors, left_out};
 use nalgebra::Vector3;
 use proboscis::dynamics::Start;
 use proboscis::dynamics::trajectory::Trajectory;
@@ -76,7 +76,7 @@ fn turned(n: usize, time: f64) -> f64 {
 
 #[test]
 fn forty_four_bars_pass_their_singular_positions_in_steps_of_10_ms() {
-    let linkage = model(four_bars(40));
+    let linkage = in_directors(four_bars(40));
     let start = pushed(&linkage, 40);
     let discrete = motion(&linkage, &start, 0.01, 300, &[]);
     holds(&linkage, &discrete);
@@ -105,7 +105,7 @@ fn forty_four_bars_pass_their_singular_positions_in_steps_of_10_ms() {
 fn a_row_of_four_bars_passes_its_singular_positions() {
     // θ̈ = [((N+1)/2 + N)/((N+1)/3 + N)] g sin θ, θ(0) = 0, θ̇(0) = 1; top of the first bar at 1 s for N = 2.
     let exact = [-0.1950203019, -0.9807992057];
-    let linkage = model(four_bars(2));
+    let linkage = in_directors(four_bars(2));
     assert_eq!(left_out(&linkage).len(), 6);
     assert_eq!(linkage.loops.mobility, Some(1));
     let start = pushed(&linkage, 2);

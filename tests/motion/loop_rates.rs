@@ -9,8 +9,8 @@ use proboscis::control::problem::BoundaryState;
 use proboscis::control::resolve_start;
 use proboscis::dynamics::observations;
 use proboscis::files::read_problem;
-use proboscis::model::Model;
 use proboscis::model::system::JointKind;
+use proboscis::model::{Coordinates, Model};
 use serde_json::json;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -96,7 +96,7 @@ fn a_named_velocity_stays_beside_a_loop() {
         joint.parent = Some(joint.parent.map_or(0, |body| body + 1));
         joint.child += 1;
     }
-    let model = Model::new(system, None, 1e-3, &[]).unwrap();
+    let model = Model::new(system, Some(Coordinates::Redundant), 1e-3, &[]).unwrap();
     assert!(model.has_loops());
     let velocity = [Vector3::new(0.1, 0.0, 0.3), Vector3::new(0.2, -0.1, 0.5)];
     for (body, rate) in [(4, None), (0, None), (0, Some(2.0))] {

@@ -64,7 +64,7 @@ fn compared(models: &[Model; 2], motions: &[DiscreteTrajectory; 2], length: f64)
         let most = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max) / size;
         // Impulses of joint springs outside the tree, half a step apart, are momenta of instants in one of the two.
         let limit = if own.name.contains("momentum") {
-            1e-4
+            3e-4
         } else {
             1e-9
         };

@@ -20,8 +20,12 @@ pub(crate) fn hinge(
 
 pub(crate) fn model(system: System) -> Model {
     let model = Model::new(system, None, 0.01, &[]).unwrap();
-    assert_eq!(model.coordinates, Coordinates::Redundant);
+    assert_eq!(model.coordinates, Coordinates::Reduced);
     model
+}
+
+pub(crate) fn in_directors(system: System) -> Model {
+    Model::new(system, Some(Coordinates::Redundant), 0.01, &[]).unwrap()
 }
 
 pub(crate) fn left_out(model: &Model) -> Vec<&str> {
@@ -92,7 +96,7 @@ fn four_hinges_in_a_plane_move_like_two_hinges_and_two_balls() {
 fn an_instant_that_violates_what_was_left_out_opens_the_loop() {
     let axis = Vector3::z();
     let hinges = [JointKind::Revolute { axis }; 2];
-    let model = model(plane_four_bar(&Rotation3::identity(), hinges));
+    let model = in_directors(plane_four_bar(&Rotation3::identity(), hinges));
     let mut z = at_reference(&model);
     assert_eq!(model.open_loop(&z, 1e-12), None);
     // The rocker, along the axis.
@@ -116,7 +120,7 @@ fn two_hinges_on_one_axis_are_a_door() {
     assert_eq!(left_out(&both).len(), 5);
     assert_eq!(both.loops.mobility, Some(1));
     let one = bare(vec![door()], vec![lower], down);
-    let one = Model::new(one, Some(Coordinates::Redundant), 0.01, &[]).unwrap();
+    let one = model(one);
     assert_eq!(one.loops.mobility, None);
     let run = |model: &Model| Trajectory::from_discrete(model, &falls(model, 0.01, 200));
     let (a, b) = (run(&both), run(&one));

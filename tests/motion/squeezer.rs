@@ -108,7 +108,7 @@ fn squeezer() -> System {
 #[test]
 fn the_squeezing_mechanism_moves_as_published() {
     let model = Model::new(squeezer(), None, 1e-4, &[]).unwrap();
-    assert_eq!(model.coordinates, Coordinates::Redundant);
+    assert_eq!(model.coordinates, Coordinates::Reduced);
     assert_eq!(model.loops.left_out().count(), 9);
     assert_eq!(model.loops.mobility, Some(1));
     let start = Start::at_rest(&model, at_reference(&model));

@@ -17,7 +17,7 @@ fn a_loop_that_repeats_constraints_is_solved_and_inspected() {
     let names = ["hinge4 axis 1", "hinge4 axis 2", "hinge4 point 3", ""];
     assert_eq!(lines[first..first + 4], names);
     assert!(
-        out.contains("degrees of freedom with loops closed   1"),
+        out.contains("degrees of freedom with loops closed  1"),
         "{out}"
     );
     let short = ["--set", "simulate.duration=\"50 ms\"", "--output", "out"];

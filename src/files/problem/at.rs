@@ -193,7 +193,7 @@ named_parts! {
 }
 
 read_objects! {
-    /// Coordinates in which a problem is solved; reduced where the joints form a tree, unless written.
+    /// Coordinates in which a problem is solved; reduced ones, unless written.
     pub enum CoordinatesSpec: Coordinates {
         /// Joint coordinates, with multipliers of joints that close loops.
         Reduced,

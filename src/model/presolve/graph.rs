@@ -30,7 +30,7 @@ pub(crate) struct Branch {
 }
 
 impl Graph {
-    /// The spanning tree of a system, joints in the order of the scene.
+    /// The spanning tree of a system: joints of fewest freedoms first, then in the order of the scene.
     pub fn new(system: &System) -> Self {
         let mut graph = Self {
             tree: Vec::new(),
@@ -40,7 +40,8 @@ impl Graph {
         let mut reached = vec![false; system.bodies.len()];
         let mut used = vec![false; system.joints.len()];
         loop {
-            graph.grow(system, &mut reached, &mut used);
+            // Those of fewest freedoms first: a loop is closed by one of most, which holds least.
+            while (0..=6).any(|freedoms| graph.grow(system, freedoms, &mut reached, &mut used)) {}
             let Some(body) = reached.iter().position(|r| !r) else {
                 break;
             };
@@ -51,32 +52,34 @@ impl Graph {
         graph
     }
 
-    fn grow(&mut self, system: &System, reached: &mut [bool], used: &mut [bool]) {
-        loop {
-            let mut grown = false;
-            for (j, joint) in system.joints.iter().enumerate() {
-                let parent = joint.parent.is_none_or(|b| reached[b]);
-                if used[j] || parent == reached[joint.child] {
-                    continue;
-                }
-                let (from, to, sign) = match joint.parent {
-                    Some(body) if !parent => (Some(joint.child), body, -1.0),
-                    _ => (joint.parent, joint.child, 1.0),
-                };
-                reached[to] = true;
-                used[j] = true;
-                grown = true;
-                self.tree.push(Branch {
-                    joint: j,
-                    from,
-                    to,
-                    sign,
-                });
+    /// Adds joints with so many freedoms; returns true if there were any.
+    fn grow(
+        &mut self,
+        system: &System,
+        freedoms: usize,
+        reached: &mut [bool],
+        used: &mut [bool],
+    ) -> bool {
+        let before = self.tree.len();
+        for (j, joint) in system.joints.iter().enumerate() {
+            let parent = joint.parent.is_none_or(|b| reached[b]);
+            if used[j] || parent == reached[joint.child] || joint.kind.freedoms() != freedoms {
+                continue;
             }
-            if !grown {
-                return;
-            }
+            let (from, to, sign) = match joint.parent {
+                Some(body) if !parent => (Some(joint.child), body, -1.0),
+                _ => (joint.parent, joint.child, 1.0),
+            };
+            reached[to] = true;
+            used[j] = true;
+            self.tree.push(Branch {
+                joint: j,
+                from,
+                to,
+                sign,
+            });
         }
+        self.tree.len() > before
     }
 
     /// Returns true if the joints form a tree from the ground and have one coordinate each, or none.
