@@ -1,12 +1,12 @@
-//! The table of all variants, and `report.html`: scatter plot of two columns, parallel coordinates of the varied values and results, and all rows.
+//! The table of all variants, and their page.
 
 use crate::app::Ended;
 use crate::files::si;
 use crate::report::origin::Origin;
-use crate::report::page::framed;
+use crate::report::page::variants::{self, Variants};
 use crate::sweep::read::{Sweep, Variant};
 use csv::ReaderBuilder;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 use std::path::Path;
 
 /// Begins the headings of numbers at the end of a motion, or at rest.
@@ -103,11 +103,6 @@ fn cell(value: &Value) -> String {
         .map_or_else(|| value.to_string(), str::to_owned)
 }
 
-/// The page around everything, as that of a run.
-const FRAME: &str = include_str!("page.html");
-/// Script that draws it.
-const MODULE: &str = include_str!("page.js");
-
 /// The page; `table` has a row of headings first.
 pub(super) fn html(
     sweep: &Sweep,
@@ -115,15 +110,19 @@ pub(super) fn html(
     table: &[Vec<String>],
     origin: &Origin,
 ) -> String {
-    let solved: Vec<bool> = ends.iter().map(|end| end.is_solved).collect();
-    let count = solved.iter().filter(|&&is_solved| is_solved).count();
-    let problem = sweep.problem.display();
-    let data = json!({
-        "title": sweep.title,
-        "words": format!("{count} of {} variants of {problem} have an answer.", ends.len()),
-        "places": sweep.places.len(),
-        "table": table,
-        "solved": solved,
-    });
-    framed(FRAME, &sweep.title, origin, &data, &[MODULE])
+    let each = sweep.variants.iter().zip(ends);
+    let page = |one: &Variant| format!("variants/{}/report.html", one.identity);
+    let pages = each.map(|(one, end)| end.is_solved.then(|| page(one)));
+    let pages: Vec<_> = pages.collect();
+    let count = pages.iter().flatten().count();
+    let (all, problem) = (pages.len(), sweep.problem.display());
+    let variants = Variants {
+        kind: "Sweep",
+        title: &sweep.title,
+        words: format!("{count} of {all} variants of {problem} have an answer."),
+        places: sweep.places.len(),
+        table,
+        pages,
+    };
+    variants::html(&variants, origin)
 }

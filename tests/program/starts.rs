@@ -71,6 +71,10 @@ fn the_best_of_several_starts_is_kept_and_can_be_solved_again_alone() {
     }
     let table = fs::read_to_string(path.join("out/starts.csv")).unwrap();
     assert_eq!(table.lines().count(), 2 + 4);
+    let page = fs::read_to_string(path.join("out/starts.html")).unwrap();
+    assert!(
+        page.contains("4 of 4 starts have an answer.") && page.contains("starts/04/report.html")
+    );
     assert!(
         table
             .lines()
@@ -166,7 +170,7 @@ fn threads_and_processes_leave_the_same_files() {
         match name.rsplit('/').next().unwrap() {
             "summary.json" => assert_eq!(lasting(bytes), lasting(other), "{name}"),
             // They tell how long it took.
-            "starts.csv" | "report.html" => {}
+            "starts.csv" | "starts.html" | "report.html" => {}
             _ if name.contains("starts/") => {
                 assert!(bytes == other, "{name}");
                 equal += 1;

@@ -15,6 +15,8 @@ use crate::files::{Entries, Loaded, is_standard_input, printable};
 use crate::math::significant;
 use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
+use crate::report::origin::Origin;
+use crate::report::page::variants::{self, Variants};
 use crate::report::table::{Cell, aligned, cells_csv, full_and_shown};
 use crate::stop;
 use crate::workflow::program::resolve_each;
@@ -32,7 +34,7 @@ const MOST: usize = 1000;
 
 /// Solves a control problem, of one motion or several, from its own guesses and from `starts − 1` random ones, as many at once as there are cores.
 ///
-/// The files of the best solution go to the folder itself, next to `starts.csv`. A `text` stands for that of the problem file, which then only names
+/// The files of the best solution go to the folder itself, next to `starts.csv` and their page `starts.html`. A `text` stands for that of the problem file, which then only names
 /// it and the folder that paths are relative to; it is not solved in processes, which read the file.
 ///
 /// # Errors
@@ -95,7 +97,8 @@ pub fn solve_from_starts(
     })?;
     ended.sort_by_key(|one| one.number);
     let distinct = number_optima(&mut ended);
-    write(request, &batch, &ended, distinct)
+    let name = &loaded.system.name;
+    write(request, &batch, &ended, distinct, name)
 }
 
 fn wrong_option(reason: String) -> CommandError {
@@ -138,12 +141,15 @@ fn write(
     batch: &Batch<'_>,
     ended: &[StartEnd],
     distinct: usize,
+    name: &str,
 ) -> Result<CommandOutput, CommandError> {
     let folder = &*request.folder();
     let origin = request.origin(true);
     let (full, shown) = full_and_shown(table(ended));
     let csv = cells_csv(&full, &origin);
     atomic::write(&folder.join("starts.csv"), csv.as_bytes())?;
+    let page = page(name, ended, [&full, &shown], &origin);
+    atomic::write(&folder.join("starts.html"), page.as_bytes())?;
     // Of the starts that found the best optimum the first, whatever the last digits say.
     let first = ended.iter().find(|one| one.optimum == Some(1));
     let best = first.or_else(|| best(ended));
@@ -241,6 +247,42 @@ fn table(ended: &[StartEnd]) -> Vec<Vec<Cell>> {
         ]
     };
     [header].into_iter().chain(ended.iter().map(row)).collect()
+}
+
+/// Columns of the page of all starts: the number of a start, its status and seconds, then its results and its guess.
+const OF_PAGE: [usize; 7] = [0, 2, 5, 4, 3, 6, 1];
+
+/// The page of all starts, from their table in full and as it is shown.
+fn page(
+    name: &str,
+    ended: &[StartEnd],
+    [full, shown]: [&[Vec<String>]; 2],
+    origin: &Origin,
+) -> String {
+    let row = |(full, shown): (&Vec<String>, &Vec<String>)| {
+        let cell = |column| match column {
+            1 => shown[column].clone(),
+            _ => full[column].clone(),
+        };
+        OF_PAGE.map(cell).to_vec()
+    };
+    let table: Vec<_> = full.iter().zip(shown).map(row).collect();
+    let place = |one: &StartEnd| folder_of(Path::new(""), one.number).join("report.html");
+    let pages = ended.iter().map(|one| {
+        let page = place(one).display().to_string();
+        one.ended.is_solved.then_some(page)
+    });
+    let pages: Vec<_> = pages.collect();
+    let count = pages.iter().flatten().count();
+    let variants = Variants {
+        kind: "Starts",
+        title: name,
+        words: format!("{count} of {} starts have an answer.", pages.len()),
+        places: 0,
+        table: &table,
+        pages,
+    };
+    variants::html(&variants, origin)
 }
 
 /// Copies the files of a start, its summary last and with the table of all.

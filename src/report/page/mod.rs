@@ -7,6 +7,7 @@ mod charts;
 pub mod compared;
 mod disturbance;
 mod scene;
+pub mod variants;
 
 use crate::report::origin::Origin;
 use crate::report::quoting::escape;

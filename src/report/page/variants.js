@@ -1,7 +1,9 @@
-// Variants of a sweep: any two columns against each other, all that varies side by side, all rows.
+// Variants of a problem: any two columns against each other, all that varies side by side, all rows.
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const [head, ...rows] = data.table;
+/** Whether a row has an answer, and with it a page. */
+const solved = data.pages.map(Boolean);
 /** Columns of what was asked: name, status, seconds, and what varies. */
 const asked = 3 + data.places;
 
@@ -88,7 +90,7 @@ function key({ at, third, values }) {
     const few = values.length <= 8 || third.words ? values : [0, 0.25, 0.5, 0.75, 1].map((part) => ends[0] + part * (ends[1] - ends[0]));
     marks.push(`${third.name}:`, ...few.map((value) => mark(at(value), "●", third.words ? third.words[value] : short(value))));
   }
-  if (data.solved.includes(false)) marks.push(mark("var(--bad)", "○", "without an answer"));
+  if (solved.includes(false)) marks.push(mark("var(--bad)", "○", "without an answer"));
   document.getElementById("key").replaceChildren(...marks);
 }
 
@@ -114,8 +116,8 @@ function scatter(colours) {
   plot.append(drawn("text", { x: 16, y: (top + bottom) / 2, "text-anchor": "middle", transform: `rotate(-90 16 ${(top + bottom) / 2})` }, y.name));
   rows.forEach((_, k) => {
     if (!Number.isFinite(x.values[k]) || !Number.isFinite(y.values[k])) return;
-    const point = drawn("circle", { class: data.solved[k] ? "" : "not", cx: place(x.values[k]), cy: height(y.values[k]), r: 5 });
-    if (data.solved[k]) point.style.fill = colours.of(k);
+    const point = drawn("circle", { class: solved[k] ? "" : "not", cx: place(x.values[k]), cy: height(y.values[k]), r: 5 });
+    if (solved[k]) point.style.fill = colours.of(k);
     point.append(words(k));
     plot.append(point);
   });
@@ -135,8 +137,8 @@ function parallel(colours) {
   rows.forEach((_, k) => {
     const points = axes.filter(({ one }) => Number.isFinite(one.values[k])).map((each) => `${each.x} ${height(each, each.one.values[k])}`);
     if (points.length < 2) return;
-    const line = drawn("path", { class: data.solved[k] ? "" : "not", d: `M${points.join("L")}` });
-    if (data.solved[k]) line.style.stroke = colours.of(k);
+    const line = drawn("path", { class: solved[k] ? "" : "not", d: `M${points.join("L")}` });
+    if (solved[k]) line.style.stroke = colours.of(k);
     line.append(words(k));
     plot.append(line);
   });
@@ -167,7 +169,7 @@ function list() {
   };
   const cell = (text, i, k) => {
     const number = i > 1 && quantity(text);
-    if (i === 0 && data.solved[k]) return element("td", {}, element("a", { href: `variants/${text}/report.html` }, text));
+    if (i === 0 && solved[k]) return element("td", {}, element("a", { href: data.pages[k] }, text));
     return element("td", { class: number ? "number" : null }, number && !number.unit ? short(number.value, 7) : text);
   };
   const body = order.map((k) => element("tr", {}, ...rows[k].map((text, i) => cell(text, i, k))));
@@ -175,7 +177,8 @@ function list() {
 }
 
 document.getElementById("system").textContent = data.title;
-const all = data.solved.every(Boolean);
+document.getElementById("kind").textContent = data.kind;
+const all = solved.every(Boolean);
 document.getElementById("answer").append(element("p", { id: "verdict", class: all ? "good" : "bad" }, `${all ? "✓" : "✗"} ${data.words}`));
 draw();
 list();
