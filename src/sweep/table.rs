@@ -3,7 +3,7 @@
 use crate::app::Ended;
 use crate::files::si;
 use crate::report::origin::Origin;
-use crate::report::page::variants::{self, Variants};
+use crate::report::page::Variants;
 use crate::sweep::read::{Sweep, Variant};
 use csv::ReaderBuilder;
 use serde_json::{Map, Value};
@@ -113,16 +113,13 @@ pub(super) fn html(
     let each = sweep.variants.iter().zip(ends);
     let page = |one: &Variant| format!("variants/{}/report.html", one.identity);
     let pages = each.map(|(one, end)| end.is_solved.then(|| page(one)));
-    let pages: Vec<_> = pages.collect();
-    let count = pages.iter().flatten().count();
-    let (all, problem) = (pages.len(), sweep.problem.display());
     let variants = Variants {
         kind: "Sweep",
         title: &sweep.title,
-        words: format!("{count} of {all} variants of {problem} have an answer."),
-        places: sweep.places.len(),
+        of: format!("variants of {}", sweep.problem.display()),
+        varied: 3..3 + sweep.places.len(),
         table,
-        pages,
+        pages: pages.collect(),
     };
-    variants::html(&variants, origin)
+    variants.html(origin)
 }

@@ -16,7 +16,7 @@ use crate::math::significant;
 use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
-use crate::report::page::variants::{self, Variants};
+use crate::report::page::Variants;
 use crate::report::table::{Cell, aligned, cells_csv, full_and_shown};
 use crate::stop;
 use crate::workflow::program::resolve_each;
@@ -148,7 +148,7 @@ fn write(
     let (full, shown) = full_and_shown(table(ended));
     let csv = cells_csv(&full, &origin);
     atomic::write(&folder.join("starts.csv"), csv.as_bytes())?;
-    let page = page(name, ended, [&full, &shown], &origin);
+    let page = page(name, ended, &shown, &origin);
     atomic::write(&folder.join("starts.html"), page.as_bytes())?;
     // Of the starts that found the best optimum the first, whatever the last digits say.
     let first = ended.iter().find(|one| one.optimum == Some(1));
@@ -249,40 +249,22 @@ fn table(ended: &[StartEnd]) -> Vec<Vec<Cell>> {
     [header].into_iter().chain(ended.iter().map(row)).collect()
 }
 
-/// Columns of the page of all starts: the number of a start, its status and seconds, then its results and its guess.
-const OF_PAGE: [usize; 7] = [0, 2, 5, 4, 3, 6, 1];
-
-/// The page of all starts, from their table in full and as it is shown.
-fn page(
-    name: &str,
-    ended: &[StartEnd],
-    [full, shown]: [&[Vec<String>]; 2],
-    origin: &Origin,
-) -> String {
-    let row = |(full, shown): (&Vec<String>, &Vec<String>)| {
-        let cell = |column| match column {
-            1 => shown[column].clone(),
-            _ => full[column].clone(),
-        };
-        OF_PAGE.map(cell).to_vec()
-    };
-    let table: Vec<_> = full.iter().zip(shown).map(row).collect();
-    let place = |one: &StartEnd| folder_of(Path::new(""), one.number).join("report.html");
+/// The page of all starts with their table.
+fn page(name: &str, ended: &[StartEnd], table: &[Vec<String>], origin: &Origin) -> String {
+    let page = |one: &StartEnd| folder_of(Path::new(""), one.number).join("report.html");
     let pages = ended.iter().map(|one| {
-        let page = place(one).display().to_string();
+        let page = page(one).display().to_string();
         one.ended.is_solved.then_some(page)
     });
-    let pages: Vec<_> = pages.collect();
-    let count = pages.iter().flatten().count();
     let variants = Variants {
         kind: "Starts",
         title: name,
-        words: format!("{count} of {} starts have an answer.", pages.len()),
-        places: 0,
-        table: &table,
-        pages,
+        of: "starts".to_owned(),
+        varied: 1..2,
+        table,
+        pages: pages.collect(),
     };
-    variants::html(&variants, origin)
+    variants.html(origin)
 }
 
 /// Copies the files of a start, its summary last and with the table of all.

@@ -7,7 +7,6 @@ mod charts;
 pub mod compared;
 mod disturbance;
 mod scene;
-pub mod variants;
 
 use crate::report::origin::Origin;
 use crate::report::quoting::escape;
@@ -15,6 +14,7 @@ use crate::report::{PageContent, Run};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
+use std::ops::Range;
 
 /// The page of motions or paths of equilibria, of which it shows one with its charts, or of plots and words alone; `subject` stands before the
 /// title, and the reader chooses among several motions by their names.
@@ -51,6 +51,39 @@ pub fn html(subject: &str, runs: &[Run<'_>], content: &PageContent, origin: &Ori
         "documents": documents.collect::<Vec<_>>(),
     });
     page(&format!("{subject}: {}", content.title), origin, &data)
+}
+
+/// Variants of one problem with their ends.
+#[derive(Debug)]
+pub struct Variants<'a> {
+    /// Their kind: `Sweep`.
+    pub kind: &'a str,
+    /// Title of the page.
+    pub title: &'a str,
+    /// Their name in a sentence: `variants of pair.json`.
+    pub of: String,
+    /// Columns with what varies.
+    pub varied: Range<usize>,
+    /// Headings, then a row of cells for each variant, of which the first is its name.
+    pub table: &'a [Vec<String>],
+    /// The page of each variant that has an answer.
+    pub pages: Vec<Option<String>>,
+}
+
+impl Variants<'_> {
+    /// Their page: scatter plot of two columns, parallel coordinates of the varied values and results, and all rows.
+    pub fn html(&self, origin: &Origin) -> String {
+        let (count, all) = (self.pages.iter().flatten().count(), self.pages.len());
+        let data = json!({
+            "kind": self.kind,
+            "title": self.title,
+            "words": format!("{count} of {all} {} have an answer.", self.of),
+            "varied": [self.varied.start, self.varied.end],
+            "table": self.table,
+            "pages": self.pages,
+        });
+        framed(VARIANTS, self.title, origin, &data, &[VARIANTS_MODULE])
+    }
 }
 
 /// A page with its title, its origin, and its contents.
@@ -101,6 +134,9 @@ const LIBRARIES: [(&str, &[u8]); 2] = [
     ),
 ];
 
+/// Frame and code of the page of variants.
+const VARIANTS: &str = include_str!("variants.html");
+const VARIANTS_MODULE: &str = include_str!("variants.js");
 /// The page around everything, with places `{{name}}` for what differs.
 const FRAME: &str = include_str!("page.html");
 /// Style sheet of the page.

@@ -4,8 +4,8 @@ const data = JSON.parse(document.getElementById("data").textContent);
 const [head, ...rows] = data.table;
 /** Whether a row has an answer, and with it a page. */
 const solved = data.pages.map(Boolean);
-/** Columns of what was asked: name, status, seconds, and what varies. */
-const asked = 3 + data.places;
+/** Columns of what varies; those before the last of them tell what was asked. */
+const [first, asked] = data.varied;
 
 /** Number and unit of a cell; none of a word. */
 function quantity(cell) {
@@ -56,9 +56,9 @@ function choice(label, id, entries, chosen) {
 
 const entries = columns.map((one, i) => [i, one.name]).slice(1);
 const objective = head.indexOf("objective");
-const across = choice("Horizontal", "x", entries, Math.min(3, head.length - 1));
+const across = choice("Horizontal", "x", entries, Math.min(first, head.length - 1));
 const upward = choice("Vertical", "y", entries, objective > 0 ? objective : Math.min(asked, head.length - 1));
-const tint = choice("Colour", "colour", [["", "none"], ...entries], data.places > 1 ? 4 : "");
+const tint = choice("Colour", "colour", [["", "none"], ...entries], asked - first > 1 ? first + 1 : "");
 
 /** The colour of each row by the column that is chosen, and of any value of it. */
 function paint() {
@@ -127,7 +127,7 @@ function scatter(colours) {
 function parallel(colours) {
   const plot = document.getElementById("parallel");
   const [left, right, top, bottom] = [60, 650, 44, 388];
-  const varied = columns.map((_, i) => i).slice(3, asked);
+  const varied = columns.map((_, i) => i).slice(first, asked);
   const chosen = [upward.value, across.value, tint.value].filter((value) => value !== "").map(Number);
   const shown = [...new Set([...varied, ...chosen])];
   plot.replaceChildren();
