@@ -105,7 +105,11 @@ impl BoundaryConditions {
         prescribed::check_periodic(&model, control)?;
         let rests = rests_at(&control.goal);
         prescribed::check_end_of_motions(&model, control, rests != Rests::Nothing)?;
-        let (start, of_start) = start_of(&model, &control.start)?;
+        let (mut start, mut of_start) = start_of(&model, &control.start)?;
+        if control.continues[0] {
+            // Only the solver begins there.
+            (start, of_start) = (Start::at_rest(&model, start.z), None);
+        }
         leave_out_constant(&mut model, &limits, &start.z)?;
         let (mut given, of_goal) = coordinates_at_goal(&model, control)?;
         prescribed::at_goal(&model, control, &mut given)?;
@@ -117,6 +121,7 @@ impl BoundaryConditions {
             BoundaryState::Periodic => [None; 2],
             _ => [&control.start, &control.goal].map(BoundaryState::voltages),
         };
+        let rest = [rest[0].filter(|_| !control.continues[0]), rest[1]];
         let mut boundary = Self {
             start,
             momentum_slopes: Vec::new(),
@@ -131,7 +136,7 @@ impl BoundaryConditions {
             limits,
         };
         let rest = boundary.goal.rest.as_ref();
-        let is_known = control.goal != BoundaryState::Periodic;
+        let is_known = control.knows_start();
         let start = is_known.then_some(&boundary.start.z[..]);
         let ends = match are_held {
             true => [None; 2],
@@ -372,6 +377,11 @@ pub(super) fn without_steps(control: &Control, limits: &Limits) -> Vec<String> {
 }
 
 impl Control {
+    /// Returns true if the start is known: it is neither that of a period nor the end of another motion.
+    pub fn knows_start(&self) -> bool {
+        self.goal != BoundaryState::Periodic && !self.continues[0]
+    }
+
     /// Returns true if the inputs that hold the goal are sought with the motion.
     pub fn seeks_hold(&self) -> bool {
         self.sought_hold == SoughtHold::Always

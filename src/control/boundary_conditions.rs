@@ -272,6 +272,7 @@ impl Control {
             given: BTreeMap::new(),
             course: Some(inputs.clone()),
             parameters: Vec::new(),
+            continues: [false; 2],
             sought_hold: SoughtHold::Never,
             hold: Hold::Reported,
             objective: Objective::default(),

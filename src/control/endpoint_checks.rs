@@ -31,8 +31,11 @@ pub(super) fn check(
         return Err(BoundaryError::refused("limits", reason));
     }
     given_amounts(model, boundary, control)?;
-    let is_known = control.goal != BoundaryState::Periodic;
-    let [is_start, is_goal] = boundary.sought_rest.map(|is_sought| is_known && !is_sought);
+    let known = [
+        control.knows_start(),
+        control.goal != BoundaryState::Periodic,
+    ];
+    let [is_start, is_goal] = [0, 1].map(|end| known[end] && !boundary.sought_rest[end]);
     let start = boundary.start.z.iter();
     let start: Vec<_> = start.map(|value| is_start.then_some(*value)).collect();
     let goal = &boundary.goal.coordinates;
@@ -52,7 +55,7 @@ pub(super) fn check(
         let mut end = End::new(model, control, time, coordinates, charts, scalars);
         end.is_at_rest = matches!(state, BoundaryState::RestAtVoltages(..));
         match state {
-            _ if !is_known => {}
+            _ if !known[usize::from(place == "goal")] => {}
             BoundaryState::JointAngles { angles, .. } => end.angles = angles.clone(),
             BoundaryState::Markers { places, .. } => end.places = places.clone(),
             BoundaryState::RestAtVoltages(..)

@@ -186,7 +186,7 @@ pub(super) fn moving_start(
     control: &Control,
     start: &mut Start,
 ) -> Result<Vec<MomentumSlopes>, BoundaryError> {
-    if control.goal == BoundaryState::Periodic {
+    if !control.knows_start() {
         return Ok(Vec::new());
     }
     let is_end = matches!(control.start, BoundaryState::EndOf(_));

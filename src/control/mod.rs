@@ -16,6 +16,7 @@ mod limits;
 mod numbering;
 mod objective;
 mod passed_limits;
+mod phases;
 mod prescribed;
 pub mod problem;
 mod regulator;

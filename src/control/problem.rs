@@ -175,6 +175,9 @@ pub struct Control {
     pub varied: Vec<Varied>,
     /// Outcomes that are differentiated; where there are none, all that an optimum has.
     pub outcomes: Vec<OutcomeOf>,
+    /// True where the start is the end of a motion that is sought with this one, and where the end is the start of one: those of phases. The state at
+    /// the start is where the solver begins.
+    pub continues: [bool; 2],
     /// Search for the inputs that hold the goal.
     pub sought_hold: SoughtHold,
     /// Treatment of a goal that cannot be kept.
@@ -263,13 +266,15 @@ pub struct Motions {
 }
 
 /// Objective of several motions.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Combined {
     /// The sum of their objectives.
     #[default]
     Sum,
     /// The greatest of their objectives.
     Worst,
+    /// The sum of those of phases: each motion goes on where the one before ended. They have this duration in ms together, where one is given.
+    InSequence(Option<f64>),
 }
 
 impl Motions {

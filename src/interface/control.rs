@@ -17,6 +17,7 @@ use crate::model::{Parameter, System, What};
 use crate::nlp::Nlp;
 use crate::tasks;
 use crate::tasks::SolveRequest;
+use crate::workflow::WorkflowError;
 use crate::workflow::memory::Occasion;
 use crate::workflow::optimum::SolveLimits;
 use crate::workflow::program::with_joined;
@@ -144,10 +145,10 @@ impl Control {
         refuse!(unless holds, Entry("control");
             found format!("weights {weights:?} of effort, rate, time and peak"),
             expected "weights of which one is positive");
-        let is_periodic = self.goal == State::Periodic;
-        check_costs(costs, is_periodic, system)?;
+        let is_open = matches!(self.goal, State::Periodic | State::Free);
+        check_costs(costs, is_open, system)?;
         check_energies(energies, system)?;
-        check_waypoints(&self.task.waypoints, is_periodic, system)?;
+        check_waypoints(&self.task.waypoints, is_open, system)?;
         check_limits(&self.task.limits, system)?;
         let control = problem::Control {
             start: self.start.resolve(system)?,
@@ -290,6 +291,13 @@ impl<'a> Together<'a> {
         Self { combined, ..self }
     }
 
+    /// Makes the motions phases: each goes on where the one before ended. The first one has the start; all but the last have the goal
+    /// [`State::Free`]. A `duration` in ms is that of all together.
+    pub fn in_sequence(self, duration: Option<f64>) -> Self {
+        let combined = Combined::InSequence(duration);
+        Self { combined, ..self }
+    }
+
     /// Solves; each motion is verified as one by itself, and solved again on a finer grid where a simulation under its inputs does not reproduce it.
     ///
     /// # Errors
@@ -314,10 +322,16 @@ impl<'a> Together<'a> {
             Ok(sources[found.unwrap_or_default()].name.clone())
         };
         let shared_inputs = self.shared.iter().map(name).collect::<Result<_>>()?;
-        let motions = Motions {
-            list,
-            shared_inputs,
-            combined: self.combined,
+        let motions = match self.combined {
+            Combined::InSequence(whole) => Motions::in_sequence(list, whole).map_err(|fault| {
+                let reason = format!("found {}, expected {}", fault.finding(), fault.expected);
+                WorkflowError::problem(format!("control.{}", fault.at), reason)
+            })?,
+            combined => Motions {
+                list,
+                shared_inputs,
+                combined,
+            },
         };
         let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());
         let found = tasks::solve_motions(&motions.task(), SolveRequest::default(), go_on)?;
@@ -326,7 +340,7 @@ impl<'a> Together<'a> {
 }
 
 /// Refuses costs of parts that the system does not have, and weights and functions of time that are not finite.
-fn check_costs(costs: &[QuantityCost], is_periodic: bool, system: &System) -> Result<()> {
+fn check_costs(costs: &[QuantityCost], is_open: bool, system: &System) -> Result<()> {
     for cost in costs {
         let quantity = &cost.quantity;
         let is_behind = |source: usize| {
@@ -342,7 +356,7 @@ fn check_costs(costs: &[QuantityCost], is_periodic: bool, system: &System) -> Re
             CostFunction::Itself => true,
         };
         let is_timed = match cost.during {
-            During::At(part) => is_on_the_way(part, is_periodic),
+            During::At(part) => is_on_the_way(part, is_open),
             During::Motion | During::End => true,
         };
         let is_sound = cost.weight > 0.0 && cost.weight.is_finite() && is_followed && is_timed;
@@ -376,14 +390,14 @@ fn check_limits(limits: &[Limit], system: &System) -> Result<()> {
 }
 
 /// Refuses waypoints of parts that the system does not have, and those that are not on the way.
-fn check_waypoints(waypoints: &[Waypoint], is_periodic: bool, system: &System) -> Result<()> {
+fn check_waypoints(waypoints: &[Waypoint], is_open: bool, system: &System) -> Result<()> {
     for waypoint in waypoints {
         let of_joint = |(joint, value): (&usize, &f64)| {
             let joint = system.joints.get(*joint);
             joint.is_some_and(Joint::has_coordinate) && value.is_finite()
         };
         let mut given = waypoint.places.values().flat_map(|place| place.given());
-        let holds = is_on_the_way(waypoint.part, is_periodic)
+        let holds = is_on_the_way(waypoint.part, is_open)
             && waypoint.places.keys().all(|&m| m < system.markers.len())
             && given.all(|(_, value)| value.is_finite())
             && waypoint.angles.iter().all(of_joint);
@@ -395,6 +409,6 @@ fn check_waypoints(waypoints: &[Waypoint], is_periodic: bool, system: &System) -
 }
 
 /// Returns true if a part of the duration lies on the way: the end of a periodic motion does.
-fn is_on_the_way(part: f64, is_periodic: bool) -> bool {
-    part > 0.0 && (part < 1.0 || (is_periodic && part == 1.0))
+fn is_on_the_way(part: f64, is_open: bool) -> bool {
+    part > 0.0 && (part < 1.0 || (is_open && part == 1.0))
 }

@@ -221,7 +221,7 @@ fn remarks(
         remarks.note("hold", found);
     }
     remarks.note("linear_solver", optimum.solution.linear.note());
-    if is_unreached(&optimum.solution) {
+    if is_unreached(&optimum.solution) && control.continues == [false; 2] {
         remarks.note("infeasible", explain(control, optimum));
     }
     remarks.note("earlier_solution", carried(&optimum.carried));

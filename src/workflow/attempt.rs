@@ -1,7 +1,7 @@
 //! A control problem solved from one start: boundary, guess, program, solver.
 
 use crate::control::problem::{Control, ControlTask, Duration, MotionTask};
-use crate::control::{BoundaryConditions, Carried, Transcription};
+use crate::control::{BoundaryConditions, Carried, Solution, Transcription};
 use crate::dynamics::{DiscreteTrajectory, reversed_muscle};
 use crate::ipopt::{OptionValue, Options, Solver, SolverResult};
 use crate::model::{Coordinates, Model};
@@ -124,18 +124,18 @@ pub(crate) fn attempt(
     let places = program.places().clone();
     let each = task.motions.iter().zip(&resolved);
     let each = each.zip(program.into_parts()).zip(carried).enumerate();
-    let optima = each.map(|(number, (((one, resolved), mut part), carried))| {
+    let mut optima: Vec<Optimum> = Vec::new();
+    for (number, (((one, resolved), mut part), carried)) in each {
         let own = part_of(&places, number, &solution, &mut part);
-        let optimum = Optimum::new(one, resolved, part, own);
-        let optimum = optimum.map_err(|error| error.of_motion(one.name))?;
-        Ok(Optimum {
+        let before = optima.last().filter(|_| one.control.continues[0]);
+        let optimum = Optimum::new(one, resolved, part, own, before.map(|phase| &phase.motion));
+        optima.push(Optimum {
             setup,
             carried,
             cut_short,
-            ..optimum
-        })
-    });
-    let mut optima = optima.collect::<Result<Vec<_>, WorkflowError>>()?;
+            ..optimum.map_err(|error| error.of_motion(one.name))?
+        });
+    }
     // A part of an objective may vanish: the gap of the whole counts.
     if let [only] = &mut optima[..] {
         (only.program.gap, only.program.wide) = (whole.gap, whole.wide.clone());
@@ -149,12 +149,14 @@ pub(crate) fn attempt(
 }
 
 impl Optimum {
-    /// The end of a solve for one motion with its verification; parameters that were found are put in.
+    /// The end of a solve for one motion, `before` which there may be the phase that it goes on from, with its verification; parameters that were found
+    /// are put in.
     fn new(
         task: &MotionTask<'_>,
         resolved: &(Arc<Model>, BoundaryConditions),
         mut program: Transcription<'_>,
         solution: SolverResult,
+        before: Option<&Solution>,
     ) -> Result<Self, WorkflowError> {
         let MotionTask {
             system, control, ..
@@ -214,14 +216,19 @@ impl Optimum {
             not_found: None,
         };
         if is_solved {
-            out.verify(control, &discrete);
+            out.verify(control, &discrete, before);
         }
         Ok(out)
     }
 
     /// Completes start and goal by what was found with the motion, and verifies it from there: muscles that turn around within an interval, and,
     /// where none does, a simulation under its voltages.
-    fn verify(&mut self, control: &Control, discrete: &DiscreteTrajectory) {
+    fn verify(
+        &mut self,
+        control: &Control,
+        discrete: &DiscreteTrajectory,
+        before: Option<&Solution>,
+    ) {
         let Self {
             model,
             boundary,
@@ -229,7 +236,7 @@ impl Optimum {
             ..
         } = self;
         hold_check::keep_found(model, boundary, discrete);
-        hold_check::begin_periodic(control, boundary, motion);
+        hold_check::begin(control, boundary, motion, before);
         self.reversed = reversed_muscle(model, discrete);
         if self.reversed.is_some() {
             return;
@@ -256,8 +263,12 @@ fn part_of(
     let x = places.values_of(number, &whole.x);
     SolverResult {
         objective: program.objective(&x),
+        constraints: {
+            let mut rows = vec![0.0; program.constraints().count()];
+            program.constraint(&x, &mut rows);
+            rows
+        },
         x,
-        constraints: whole.constraints[places.rows(number)].to_vec(),
         costates: multipliers_of(places, number, &whole.costates),
         ..whole.clone()
     }

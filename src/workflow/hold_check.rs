@@ -68,7 +68,8 @@ pub(crate) fn warning(
 
 /// Note that the continuation of a motion with a free end is not known.
 pub(crate) fn free_end(control: &Control) -> Option<String> {
-    (control.goal == BoundaryState::Free).then(|| {
+    let is_end = control.goal == BoundaryState::Free && !control.continues[1];
+    is_end.then(|| {
         "the end is free: the motion need not come to rest there, and what follows it is not verified".to_owned()
     })
 }
@@ -344,22 +345,24 @@ pub struct Repeated {
     pub comes_back: bool,
 }
 
-/// Starts a periodic motion where it was found to start, with the inputs of its end before it.
-pub(crate) fn begin_periodic(
+/// Starts a motion where it was found to start, with momenta and inputs of the end of the motion `before` it: a periodic one comes before itself.
+pub(crate) fn begin(
     control: &Control,
     boundary: &mut BoundaryConditions,
     motion: &Solution,
+    before: Option<&Solution>,
 ) {
-    if control.goal != BoundaryState::Periodic {
+    let itself = (control.goal == BoundaryState::Periodic).then_some(motion);
+    let Some(before) = before.or(itself) else {
         return;
-    }
+    };
     boundary.start = Start {
         z: motion.z[0].clone(),
-        momentum: motion.momentum.clone(),
+        momentum: before.momentum.clone(),
         rates: None,
         time: 0.0,
     };
-    boundary.rest[0] = motion.voltages.last().cloned();
+    boundary.rest[0] = before.voltages.last().cloned();
 }
 
 /// Simulates the inputs of a periodic motion again and again, with its step, and compares the drift with the length of its path; nothing

@@ -21,6 +21,7 @@ pub(crate) mod grids;
 pub(crate) mod hold_check;
 pub(crate) mod infeasible;
 pub(crate) mod integrate;
+mod junction;
 pub(crate) mod memory;
 pub(crate) mod motion;
 pub(crate) mod optimise;

@@ -10,7 +10,7 @@ use crate::model::{Model, Parameter, Role, System, What, with_parameters};
 use crate::nlp::joined::{Joined, Places, SharedVariable};
 use crate::nlp::{Multipliers, Nlp};
 use crate::workflow::error::WorkflowError;
-use crate::workflow::{hold_check, memory};
+use crate::workflow::{hold_check, junction, memory};
 use std::sync::Arc;
 
 /// The program of a motion, or of several, with the point to start from and what that point is worth.
@@ -205,7 +205,7 @@ pub(crate) struct ProgramMotion<'m> {
 /// The multipliers of the program of a motion.
 pub(super) fn multipliers_of(places: &Places, number: usize, whole: &Multipliers) -> Multipliers {
     Multipliers {
-        constraints: whole.constraints[places.rows(number)].to_vec(),
+        constraints: places.row_multipliers_of(number, &whole.constraints),
         lower: places.multipliers_of(number, &whole.lower),
         upper: places.multipliers_of(number, &whole.upper),
     }
@@ -226,7 +226,19 @@ pub(super) fn joined<'m>(
         let own = own.map_err(|error| WorkflowError::boundary("control", &error))?;
         rest.extend(own.into_iter().map(|one| (number, one)));
     }
-    let shared = shared_variables(&parts, &rest, task.shared_inputs)?;
+    let mut shared = shared_variables(&parts, &rest, task.shared_inputs)?;
+    let mut rows = Vec::new();
+    if let Combined::InSequence(_) = task.combined {
+        for first in 0..parts.len() - 1 {
+            let pair = [&parts[first].0, &parts[first + 1].0];
+            let names = [motions[first].task.name, motions[first + 1].task.name];
+            junction::check(pair.map(Transcription::model), names)?;
+            let (variables, balances) = junction::shared(pair, first, parts.len() + rest.len());
+            shared.extend(variables);
+            rows.extend(balances);
+        }
+    }
+    let durations = junction::Durations::new(parts.iter().map(|(program, _)| program), task);
     let (mut programs, mut points) = (Vec::new(), Vec::new());
     for (motion, (program, point)) in motions.iter().zip(parts) {
         programs.push((motion.task.name.to_owned(), program));
@@ -239,10 +251,11 @@ pub(super) fn joined<'m>(
         programs.push((name, one.program));
         points.push(one.point);
     }
-    let program = Joined::new(programs, &shared).with_objectives_of(motions.len());
+    let program = Joined::with_rows(programs, &shared, &rows).with_objectives_of(motions.len());
     let mut program = match task.combined {
         Combined::Sum => program,
         Combined::Worst => program.with_worst(),
+        Combined::InSequence(_) => durations.of(program),
     };
     let mut point = joined_point(program.places(), &points);
     let StartingPoint { x, costates } = &mut point;
@@ -262,11 +275,10 @@ fn joined_point(places: &Places, points: &[StartingPoint]) -> StartingPoint {
     StartingPoint {
         x: places.values(&x),
         costates: all.map(|all| Multipliers {
-            constraints: all
-                .iter()
-                .flat_map(|one| &one.constraints)
-                .copied()
-                .collect(),
+            constraints: {
+                let lists: Vec<&[f64]> = all.iter().map(|one| &*one.constraints).collect();
+                places.row_multipliers(&lists)
+            },
             lower: of(|one| &one.lower, &all),
             upper: of(|one| &one.upper, &all),
         }),

@@ -58,6 +58,7 @@ pub fn control(system: &System, intervals: usize) -> Control {
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),
+        continues: [false; 2],
         sought_hold: SoughtHold::default(),
         hold: Default::default(),
         objective: Objective {

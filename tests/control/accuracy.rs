@@ -63,6 +63,7 @@ fn double_integrator(intervals: usize) -> Attempt<usize> {
         given: Default::default(),
         course: None,
         parameters: Vec::new(),
+        continues: [false; 2],
         sought_hold: SoughtHold::default(),
         hold: Default::default(),
         // h is in ms and the effort in s.

@@ -66,6 +66,7 @@ fn optimum(
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),
+        continues: [false; 2],
         sought_hold: SoughtHold::default(),
         hold: Default::default(),
         // h is in ms and the effort in s.

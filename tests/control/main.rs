@@ -38,6 +38,7 @@ mod motions_shared;
 mod optimality;
 mod peak_voltage;
 mod periodic;
+mod phases;
 mod prescribed;
 mod rate_limits;
 mod reaction_limits;

@@ -44,6 +44,7 @@ fn problem(name: &str, coordinates: Coordinates) -> Control {
         given: BTreeMap::new(),
         course: None,
         parameters: Vec::new(),
+        continues: [false; 2],
         sought_hold: SoughtHold::default(),
         hold: Default::default(),
         objective,

@@ -6,14 +6,14 @@ use std::collections::BTreeMap;
 /// Most lines, by fifties, and most files of each folder of `src`; the first is what lies above all folders.
 const SIZES: [(&str, usize, usize); 26] = [
     (".", 1400, 7),
-    ("app", 8050, 33),
-    ("control", 9550, 35),
+    ("app", 8100, 33),
+    ("control", 9700, 36),
     ("coordinates", 3150, 17),
     ("dynamics", 10950, 36),
     ("element", 3400, 15),
     ("energy", 2250, 15),
     ("feedback", 850, 4),
-    ("files", 16350, 79),
+    ("files", 16450, 79),
     ("functional", 5350, 20),
     ("identify", 2950, 9),
     ("interface", 2250, 12),
@@ -23,14 +23,14 @@ const SIZES: [(&str, usize, usize); 26] = [
     ("math", 1400, 8),
     ("mesh", 1700, 12),
     ("model", 12200, 59),
-    ("nlp", 2050, 7),
-    ("report", 6350, 33),
+    ("nlp", 2200, 7),
+    ("report", 6400, 33),
     ("sensitivity", 2450, 7),
     ("sparse", 7300, 34),
     ("study", 2200, 11),
     ("sweep", 650, 3),
     ("tasks", 1400, 6),
-    ("workflow", 11200, 35),
+    ("workflow", 11350, 36),
 ];
 /// The number of parameters of functions that are patterns of tuples, such as `(a, b): (A, B)`, which should have names or be structures.
 fn tuples(text: &str) -> usize {

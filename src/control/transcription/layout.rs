@@ -26,6 +26,8 @@ const TWO_STRETCHES: usize = 16;
 #[derive(Clone, Debug)]
 pub(in crate::control) struct Layout {
     pub(in crate::control) span: Span,
+    /// True where the balances of start and end are added to those of other phases.
+    continues: [bool; 2],
     pub(super) horizon: Horizon,
     pub(in crate::control) unknowns: Numbering,
     /// Functions of time behind the equations of motion.
@@ -63,7 +65,9 @@ impl Layout {
             Rests::Nothing => false,
         };
         let rests = |i: usize| is_in_rest(i) && !model.is_memory(i);
-        let is_balanced = |k: usize, i: usize| (k != end || rests(i)) && !model.is_prescribed(i);
+        let [_, goes_on] = control.continues;
+        let is_balanced =
+            |k: usize, i: usize| (k != end || goes_on || rests(i)) && !model.is_prescribed(i);
         let is_given = |column| is_given(column, model, boundary, control, end);
         let mut unknowns = Numbering::new(&model.variables, span, is_given, is_balanced);
         let times = TimeRows::new(model, control, end, &mut unknowns);
@@ -83,6 +87,7 @@ impl Layout {
         }
         Self {
             span,
+            continues: control.continues,
             horizon: match control.duration {
                 Duration::Given(_) => Horizon::Given,
                 Duration::Free { .. } => Horizon::Free,
@@ -99,6 +104,15 @@ impl Layout {
         let inputs = self.unknowns.inputs.iter();
         let sought = inputs.filter(|input| self.times.place(input.column).is_none());
         sought.count()
+    }
+
+    /// Returns true of a balance that is an equation with that of another phase alone.
+    pub(super) fn is_of_junction(&self, row: Row) -> bool {
+        let [before, after] = self.continues;
+        match row {
+            Row::Instant { k, .. } => before && k == 0 || after && k == self.span.end,
+            _ => false,
+        }
     }
 
     /// First of the rows of functions of time.
@@ -141,7 +155,9 @@ fn is_given(
     let is_followed = || control.followed(model, column).is_some();
     match (column, variable.role) {
         (Column::Instant { k, i }, Role::Coordinate) => {
-            let is_sought = control.start == BoundaryState::Free || boundary.sought_rest[0];
+            let is_sought = control.start == BoundaryState::Free
+                || control.continues[0]
+                || boundary.sought_rest[0];
             let is_start = k == 0 && !is_sought && control.goal != BoundaryState::Periodic;
             is_start
                 || (k == end && boundary.goal.coordinates[i].is_some())

@@ -207,13 +207,16 @@ impl Transcription<'_> {
         self.bounds = Bounds { lower, upper };
     }
 
-    /// Bounds of the rows: zero of equations of motion, those of limits and goals in their scale.
+    /// Bounds of the rows: zero of equations of motion, none of what is one with other phases, those of limits and goals in their scale.
     pub(super) fn set_row_bounds(&mut self) {
         let Bounds { lower, upper } = &mut self.row_bounds;
         let count = self.layout.unknowns.rows.len();
         lower.resize(count, 0.0);
         upper.resize(count, 0.0);
         for (i, row) in self.layout.unknowns.rows.iter().enumerate() {
+            if self.layout.is_of_junction(*row) {
+                (lower[i], upper[i]) = (f64::NEG_INFINITY, f64::INFINITY);
+            }
             if let Row::Limit { limit, k } = *row {
                 let limit = &self.layout.limits[limit];
                 let part = limit.part(k);

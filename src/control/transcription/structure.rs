@@ -215,6 +215,7 @@ pub(in crate::control) fn overdetermined(
     let mut named = BTreeMap::new();
     goals.for_each(|goal| *named.entry(goal.bounded.name.clone()).or_insert(0) += 1);
     let balances = rows.iter().filter(|row| !matches!(row, Row::Limit { .. }));
+    let balances = balances.filter(|row| !layout.is_of_junction(**row));
     let equations = balances.count() + named.values().sum::<usize>();
     let unknowns = layout.unknowns.columns.len();
     if equations <= unknowns {

@@ -65,7 +65,7 @@ pub(crate) fn control(
     let mut goal = goal(spec, &objective, at)?;
     let course = Course {
         duration,
-        is_periodic: goal == BoundaryState::Periodic,
+        is_open: matches!(goal, BoundaryState::Periodic | BoundaryState::Free),
     };
     let (waypoints, near) = waypoints(&spec.waypoints, course, &at.key("waypoints"))?;
     objective.quantities.extend(near);
@@ -91,7 +91,6 @@ pub(crate) fn control(
     }));
     given.extend(loads);
     check_final_conditions(&goal, &at.key("goal"))?;
-    let limits = limits(&spec.limits, &at.key("limits"))?;
     let guess = at.optional("guess", &spec.guess, |at, spec| {
         guess(spec, voltage_bounds, at)
     })?;
@@ -110,10 +109,11 @@ pub(crate) fn control(
         given,
         course,
         parameters,
+        continues: [false; 2],
         sought_hold: sought_hold(spec.goal.as_ref()),
         hold: spec.hold.into(),
         objective,
-        limits,
+        limits: limits(&spec.limits, &at.key("limits"))?,
         waypoints,
         coordinates: spec.coordinates.map(Into::into),
         guess,
@@ -332,6 +332,9 @@ read_objects! {
         /// Several motions in one optimisation: what `free` seeks is the same in all of them, and the objective is the sum of theirs. Each names the
         /// keys that are other ones in it.
         pub motions?: Vec<MotionSpec>,
+        /// Phases of one motion, each of which goes on where the one before ended: the first one begins at `start`, the last one ends at `goal`. Each
+        /// has its `duration`, given or with bounds and a guess, and the keys that are other ones in it; `duration` beside them is that of all together.
+        pub phases?: Vec<MotionSpec>,
         /// Names of muscles, driven electrodes (`block.electrode`) and loads whose inputs are sought once for all motions; these have one
         /// given duration and one number of intervals.
         pub shared_inputs?: Vec<String>,
@@ -351,7 +354,8 @@ read_objects! {
 /// Keys that are needed, but where each motion may have its own.
 fn needed_without_motions(schema: &mut Schema) {
     if let Some(needed) = schema.remove("required") {
-        let no_motions = json_schema!({ "not": { "required": ["motions"] } });
+        let has = |key| json_schema!({ "required": [key] });
+        let no_motions = json_schema!({ "not": { "anyOf": [has("motions"), has("phases")] } });
         schema.insert("if".into(), no_motions.to_value());
         let needed = json_schema!({ "required": needed });
         schema.insert("then".into(), needed.to_value());
@@ -359,10 +363,11 @@ fn needed_without_motions(schema: &mut Schema) {
 }
 
 /// Keys of a control problem that all of its motions have in common.
-pub(crate) const COMMON: [&str; 6] = [
+pub(crate) const COMMON: [&str; 7] = [
     "combine",
     "free",
     "motions",
+    "phases",
     "sensitivity",
     "shared_inputs",
     "solver",

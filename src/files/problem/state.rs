@@ -360,7 +360,7 @@ read_objects! {
 #[derive(Clone, Copy)]
 pub(crate) struct Course {
     pub(crate) duration: Duration,
-    pub(crate) is_periodic: bool,
+    pub(crate) is_open: bool,
 }
 
 /// The waypoints that are written: those that are conditions, and the costs that others are.
@@ -422,15 +422,15 @@ impl WaypointSpec {
             (None, _) => {
                 let part = self.part.unwrap_or_default();
                 let name = format!("waypoint at {} of the duration", shortest(part, 6));
-                let expected = match of.is_periodic {
+                let expected = match of.is_open {
                     true => "a number above 0 and at most 1",
                     false => "a number above 0 and below 1",
                 };
                 (part, name, part.to_string(), expected)
             }
         };
-        // The end of a periodic motion is its start.
-        match part > 0.0 && (part < 1.0 || (of.is_periodic && part == 1.0)) {
+        // No goal says where an open motion ends.
+        match part > 0.0 && (part < 1.0 || (of.is_open && part == 1.0)) {
             true => Ok((part, name)),
             false => Err(at.key(key).wrong(found, expected)),
         }

@@ -1,7 +1,8 @@
 //! Problems within a problem: the motions of a list, recordings whose scenes are other ones, parts of a disturbance, a problem that a controller plans
 //! anew.
 //!
-//! Each motion is the problem that remains with the keys of its entry in the place of those of `control`. The disturbance of a closed loop is the same
+//! Each motion is the problem that remains with the keys of its entry in the place of those of `control`; phases are motions one after another, of which
+//! the first one begins at the start of `control` and the last one ends at its goal. The disturbance of a closed loop is the same
 //! simulation with values between those of no disturbance and those that the problem has.
 
 use std::collections::BTreeSet;
@@ -30,6 +31,7 @@ use crate::files::problem::identify::IdentifySpec;
 use crate::files::problem::simulation::refuse_given;
 use crate::files::study::ChangesSpec;
 use crate::files::units::number_and_unit;
+use crate::files::units::quantity::{Quantity, Time};
 use crate::math::shortest;
 use crate::model::Parameter;
 use crate::model::system::{Source, System};
@@ -37,7 +39,11 @@ use crate::model::system::{Source, System};
 /// Keys of a motion that are none of a control problem.
 const OWN: [&str; 2] = ["name", "set"];
 /// Keys of a control problem with motions that no motion has.
-const OF_ALL: [&str; 3] = ["combine", "motions", "shared_inputs"];
+const OF_ALL: [&str; 4] = ["combine", "motions", "phases", "shared_inputs"];
+/// Key of motions one after another.
+const PHASES: &str = "phases";
+/// Keys of a control problem with phases that are those of the whole.
+const OF_WHOLE: [&str; 3] = ["duration", "goal", "start"];
 
 /// A motion as a problem of its own.
 pub(crate) struct MotionDocument<'a> {
@@ -47,24 +53,45 @@ pub(crate) struct MotionDocument<'a> {
     pub(crate) changes: Changes<'a>,
 }
 
+/// Key and list of the motions or phases of a control problem.
+fn list_of<'d>(control: Json<'d>) -> Option<(&'static str, Json<'d>)> {
+    let list = |key| Some((key, control.entry(key)?));
+    list("motions").or_else(|| list(PHASES))
+}
+
 /// The motions of a problem, if it has a list of them.
 pub(crate) fn motions(document: &Document) -> Result<Option<Vec<MotionDocument<'_>>>> {
     let Some(control) = document.entry("control") else {
         return Ok(None);
     };
-    let Some(list) = control.entry("motions") else {
+    let Some((key, list)) = list_of(control) else {
         return Ok(None);
     };
     let scope = Scope::of(document).key("control");
     refuse!(if control.entry("sensitivity").is_some(), scope.key("sensitivity");
         found "sensitivities of several motions", expected "a problem of one motion");
-    let scope = scope.key("motions");
+    let apart: &[&str] = match key {
+        PHASES => &["combine", "shared_inputs"],
+        _ => &[PHASES],
+    };
+    let other = apart.iter().find(|other| control.entry(other).is_some());
+    refuse!(if let Some(other) = other, scope.key(other);
+        found format!("the key {other:?}"), expected format!("none beside {key:?}"));
+    let scope = scope.key(key);
     refuse!(if list.first() != Some('['), scope; found list, expected "a list of motions");
+    refuse!(if key == PHASES && list.parts().len() == 1, scope;
+        found "one phase", expected "a list of two phases or more");
     refuse!(if list.parts().len() == 0, scope;
         found "no motion", expected "a list of one motion or more");
     let mut names = BTreeSet::new();
+    let last = list.parts().len() - usize::from(key == PHASES);
     let each = list.parts().enumerate().map(|(number, written)| {
-        let motion = one(written, number, control, &scope.index(number))?;
+        let is_phase = key == PHASES;
+        let mut motion = one(written, number, control, is_phase, &scope.index(number))?;
+        if is_phase && number < last {
+            let goal = JsonPath::default().key("control").key("goal");
+            Override::new(goal, "free".into()).apply(&mut motion.document)?;
+        }
         refuse!(if !names.insert(motion.name.clone()), scope.index(number).key("name");
             found format!("{:?} a second time", motion.name),
             expected "another name for each motion");
@@ -78,6 +105,7 @@ fn one<'a>(
     motion: Json<'_>,
     number: usize,
     control: Json<'_>,
+    is_phase: bool,
     scope: &Scope<'a>,
 ) -> Result<MotionDocument<'a>> {
     refuse!(if motion.first() != Some('{'), scope;
@@ -88,6 +116,12 @@ fn one<'a>(
     refuse!(if let Some(key) = common.find_map(Json::key), scope.key(&key);
         found format!("the key {key:?} in a motion"),
         expected "it beside \"motions\": all of them have it in common");
+    let ends = OF_WHOLE[1..].iter().filter(|_| is_phase);
+    refuse!(if let Some(key) = ends.copied().find(|key| motion.entry(key).is_some()), scope.key(key);
+        found format!("the key {key:?} in a phase"),
+        expected "it beside \"phases\": the first phase has the start and the last one the goal; \"waypoints\" at \"part\": 1 are places between two phases");
+    refuse!(if is_phase && motion.entry("duration").is_none(), scope;
+        found "no key \"duration\"", expected "the duration of the phase, or its bounds and a guess");
     let is_shared = |entry: &Json<'_>| {
         let is_own = entry.key().is_some_and(|key| motion.entry(&key).is_some());
         !is_own && !is_of(&OF_ALL, entry)
@@ -139,12 +173,15 @@ fn name(motion: Json<'_>, number: usize, scope: &Scope<'_>) -> Result<String> {
     Ok(name)
 }
 
-/// The motions, if what they are to share can be shared.
+/// The motions, if what they are to share can be shared, and phases can follow one another.
 pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions> {
     let of_all = Scope::of(document).key("control");
     let scope = of_all.key("shared_inputs");
     let names = "a list of names of muscles, driven electrodes and loads";
     let control = document.entry("control").expect("it has the motions");
+    if control.entry(PHASES).is_some() {
+        return in_sequence(list, control, &of_all);
+    }
     let shared_inputs: Option<_> = written(control, "shared_inputs", &of_all, names)?;
     let combined = written(control, "combine", &of_all, "\"sum\" or \"worst\"")?;
     let motions = Motions {
@@ -164,6 +201,22 @@ pub(crate) fn together(list: Vec<Motion>, document: &Document) -> Result<Motions
         found format!("inputs in common with the motion {name:?}, whose instants are other ones"),
         expected "motions of one given \"duration\" and one number of \"intervals\"");
     Ok(motions)
+}
+
+/// Phases, each of which goes on where the one before ended.
+fn in_sequence(list: Vec<Motion>, control: Json<'_>, scope: &Scope<'_>) -> Result<Motions> {
+    let place = scope.key("duration");
+    let expected = "the time of all phases together, such as \"1 s\"";
+    let whole: Option<Quantity<Time>> = written(control, "duration", scope, expected)?;
+    let whole = whole.map(|whole| place.positive(&whole)).transpose()?;
+    Motions::in_sequence(list, whole).map_err(|fault| {
+        let steps = JsonPath::parse(&fault.at).unwrap_or_default().0;
+        let at = steps.iter().fold(scope.clone(), |at, step| match step {
+            Step::Key(key) => at.key(key),
+            Step::Index(index) => at.index(*index),
+        });
+        at.error_of(fault)
+    })
 }
 
 /// That an input is sought in all motions.

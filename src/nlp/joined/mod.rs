@@ -1,4 +1,5 @@
-//! Several programs as one: variables that they share are unknowns once, all others and all constraints stand side by side, objectives are added.
+//! Several programs as one: variables that they share are unknowns once, rows that they share are one equation, all others stand side by side,
+//! objectives are added. A sum of variables may have a value of its own.
 //!
 //! In place of their sum the greatest objective may be minimised, by a bound of all of them that is one more variable.
 //!
@@ -12,7 +13,7 @@ use std::fmt;
 
 use crate::nlp::{Bounds, Entries, Nlp, Stage};
 use places::{Part, Worst, each};
-pub use places::{Places, SharedVariable};
+pub use places::{Places, SharedRow, SharedVariable};
 
 /// Several programs as one.
 pub struct Joined<N> {
@@ -24,8 +25,16 @@ pub struct Joined<N> {
     constraints: Bounds,
     jacobian: Entries,
     hessian: Entries,
+    /// The sum of variables that has a value.
+    sum: Option<Sum>,
     /// The bound of all objectives, where the greatest of them is minimised.
     worst: Option<Worst>,
+}
+
+/// A sum of variables, each with its coefficient, that has a value.
+struct Sum {
+    name: String,
+    terms: Vec<(usize, f64)>,
 }
 
 impl<N> fmt::Debug for Joined<N> {
@@ -43,6 +52,20 @@ impl<N: Nlp> Joined<N> {
     /// If there is no program, or a shared variable does not say of each whether it has it.
     #[must_use]
     pub fn new(programs: Vec<(String, N)>, shared: &[SharedVariable]) -> Self {
+        Self::with_rows(programs, shared, &[])
+    }
+
+    /// Joins programs that share rows, too.
+    ///
+    /// # Panics
+    ///
+    /// As [`new`](Self::new).
+    #[must_use]
+    pub fn with_rows(
+        programs: Vec<(String, N)>,
+        shared: &[SharedVariable],
+        shared_rows: &[SharedRow],
+    ) -> Self {
         assert!(!programs.is_empty(), "a program");
         let count = programs.len();
         let is_whole = |one: &SharedVariable| one.0.len() == count;
@@ -58,15 +81,21 @@ impl<N: Nlp> Joined<N> {
         let mut out = Self {
             parts: Vec::with_capacity(count),
             counted: count,
-            places: Places::new(&sizes, shared),
+            places: Places::new(&sizes, shared, shared_rows),
             variables: Bounds::default(),
             constraints: Bounds::default(),
             jacobian: Entries::default(),
             hessian: Entries::default(),
+            sum: None,
             worst: None,
         };
+        out.constraints = Bounds::none(out.places.row_count);
         for (name, program) in programs {
             out.add(name, program);
+        }
+        for row in shared_rows.iter().filter_map(|one| one.0.first()) {
+            let (row, _) = out.places.rows[row.0][row.1];
+            (out.constraints.lower[row], out.constraints.upper[row]) = (0.0, 0.0);
         }
         out.variables = out.joined_variables();
         out
@@ -76,10 +105,11 @@ impl<N: Nlp> Joined<N> {
     fn add(&mut self, name: String, program: N) {
         let number = self.parts.len();
         let columns = self.places.columns[number].clone();
-        let rows = self.places.rows(number);
+        let rows = self.places.rows[number].clone();
         let Bounds { lower, upper } = program.constraints();
-        self.constraints.lower.extend(lower);
-        self.constraints.upper.extend(upper);
+        for ((&(to, _), lower), upper) in rows.iter().zip(lower).zip(upper) {
+            (self.constraints.lower[to], self.constraints.upper[to]) = (*lower, *upper);
+        }
         let mut scaled = [Vec::new(), Vec::new()];
         let mut keep = |kind: usize, entry: usize, factor: f64| {
             if factor != 1.0 {
@@ -88,9 +118,9 @@ impl<N: Nlp> Joined<N> {
         };
         let jacobian = program.jacobian_structure();
         for (entry, (row, col)) in jacobian.places().enumerate() {
-            let (to, factor) = columns[col];
-            self.jacobian.push(rows.start + row, to);
-            keep(0, entry, factor);
+            let ((to, factor), (of, by_row)) = (columns[col], rows[row]);
+            self.jacobian.push(of, to);
+            keep(0, entry, factor * by_row);
         }
         let hessian = program.hessian_structure();
         for (entry, (row, col)) in hessian.places().enumerate() {
@@ -102,6 +132,7 @@ impl<N: Nlp> Joined<N> {
             entries: [jacobian.count(), hessian.count()],
             x: vec![f64::NAN; columns.len()],
             gradient: vec![0.0; columns.len()],
+            of_rows: vec![0.0; rows.len()],
             objective: 0.0,
             weight: 1.0,
             program,
@@ -139,6 +170,18 @@ impl<N: Nlp> Joined<N> {
         &self.places
     }
 
+    /// The same with a row that gives a sum of variables, each with its coefficient, a value.
+    #[must_use]
+    pub fn with_sum(mut self, name: &str, terms: Vec<(usize, f64)>, value: f64) -> Self {
+        for &(column, _) in &terms {
+            self.jacobian.push(self.constraints.count(), column);
+        }
+        self.constraints.push(value, value);
+        let name = name.to_owned();
+        self.sum = Some(Sum { name, terms });
+        self
+    }
+
     /// The programs.
     pub fn parts(&self) -> impl Iterator<Item = &N> {
         self.parts.iter().map(|part| &part.program)
@@ -158,7 +201,7 @@ impl<N: Nlp + Send> Joined<N> {
         if self.counted < 2 {
             return self;
         }
-        let (column, first_row) = (self.places.count, self.places.constraints());
+        let (column, first_row) = (self.places.count, self.constraints.count());
         self.worst = Some(Worst {
             column,
             first_row,
@@ -177,7 +220,10 @@ impl<N: Nlp + Send> Joined<N> {
     }
 
     /// Completes a point of the variables of programs, and multipliers of their rows, by what the greatest objective adds to them.
-    pub fn complete(&mut self, x: &mut [f64], multipliers: Option<&mut Vec<f64>>) {
+    pub fn complete(&mut self, x: &mut [f64], mut multipliers: Option<&mut Vec<f64>>) {
+        if let Some(multipliers) = multipliers.as_deref_mut().filter(|_| self.sum.is_some()) {
+            multipliers.push(0.0);
+        }
         if let Some(worst) = &self.worst {
             worst.complete(&mut self.parts[..self.counted], x, multipliers);
         }
@@ -235,12 +281,22 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
     }
 
     fn constraint(&mut self, x: &[f64], g: &mut [f64]) {
-        let own = self.places.constraints();
-        let (g, of_worst) = g.split_at_mut(own);
-        each(&mut self.parts, g, &|part| part.rows.len(), &|part, g| {
+        let (g, further) = g.split_at_mut(self.places.row_count);
+        each(&mut self.parts, &mut [], &|_| 0, &|part, _| {
             part.read(x);
-            part.program.constraint(&part.x, g);
+            part.program.constraint(&part.x, &mut part.of_rows);
         });
+        // −0 + g is g, bit by bit.
+        g.fill(-0.0);
+        for part in &self.parts {
+            for (&(to, factor), value) in part.rows.iter().zip(&part.of_rows) {
+                g[to] += factor * value;
+            }
+        }
+        let (of_sum, of_worst) = further.split_at_mut(usize::from(self.sum.is_some()));
+        for (row, sum) in of_sum.iter_mut().zip(&self.sum) {
+            *row = sum.terms.iter().map(|&(column, of)| of * x[column]).sum();
+        }
         if let Some(worst) = &self.worst {
             worst.rows(&mut self.parts[..self.counted], x, of_worst);
         }
@@ -248,7 +304,12 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
 
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) {
         let own = self.parts.iter().map(|part| part.entries[0]).sum();
-        let (values, of_worst) = values.split_at_mut(own);
+        let (values, further) = values.split_at_mut(own);
+        let terms = self.sum.iter().flat_map(|sum| &sum.terms);
+        let (of_sum, of_worst) = further.split_at_mut(terms.clone().count());
+        for (value, (_, coefficient)) in of_sum.iter_mut().zip(terms) {
+            *value = *coefficient;
+        }
         each(&mut self.parts, values, &|p| p.entries[0], &|part, own| {
             part.read(x);
             part.program.jacobian(&part.x, own);
@@ -269,8 +330,11 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
         }
         each(&mut self.parts, values, &|p| p.entries[1], &|part, own| {
             part.read(x);
-            let y = &costates[part.rows.clone()];
-            part.program.hessian(&part.x, part.weight, y, own);
+            for (own, &(from, factor)) in part.of_rows.iter_mut().zip(part.rows.iter()) {
+                *own = factor * costates[from];
+            }
+            part.program
+                .hessian(&part.x, part.weight, &part.of_rows, own);
             part.scale(1, own);
         });
     }
@@ -343,12 +407,20 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
     }
 
     fn constraint_name(&self, i: usize) -> String {
-        if let Some(number) = i.checked_sub(self.places.constraints()) {
-            return self.parts[number].named("its objective, below the greatest one".to_owned());
+        let place = |part: &Part<N>| part.rows.iter().position(|&(to, _)| to == i);
+        let mut found = self.parts.iter().filter_map(|p| Some((p, place(p)?)));
+        if let Some((part, own)) = found.next() {
+            return part.named(part.program.constraint_name(own));
         }
-        let mut parts = self.parts.iter();
-        let part = parts.find(|part| part.rows.contains(&i));
-        let part = part.expect("a constraint of a program");
-        part.named(part.program.constraint_name(i - part.rows.start))
+        match &self.worst {
+            Some(worst) if i >= worst.first_row => {
+                let of = "its objective, below the greatest one".to_owned();
+                self.parts[i - worst.first_row].named(of)
+            }
+            _ => self
+                .sum
+                .as_ref()
+                .map_or_else(String::new, |sum| sum.name.clone()),
+        }
     }
 }

@@ -11,7 +11,6 @@
 
 use crate::math::join_if;
 use crate::nlp::Nlp;
-use std::ops::Range;
 use std::sync::Arc;
 
 /// A variable of several programs that has one value: for each program that has it its number there, and the factor by which its value
@@ -31,12 +30,19 @@ impl SharedVariable {
     }
 }
 
+/// Rows of programs that are one equation: their sum, each times a factor, is zero. Each has its program, its number there and the factor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SharedRow(pub Vec<(usize, usize, f64)>);
+
 /// Places of the variables and constraints of each program.
 #[derive(Clone, Debug)]
 pub struct Places {
     /// For each variable of a program the variable of the whole, and the factor by which its value in the program is larger.
     pub(super) columns: Vec<Arc<[(usize, f64)]>>,
-    rows: Vec<Range<usize>>,
+    /// For each row of a program the row of the whole to which it is added, and its factor there.
+    pub(super) rows: Vec<Arc<[(usize, f64)]>>,
+    /// Number of rows of all programs.
+    pub(super) row_count: usize,
     /// Number of variables, and the first one that is shared.
     pub(super) count: usize,
     pub(super) first_shared: usize,
@@ -46,7 +52,11 @@ pub struct Places {
 
 impl Places {
     /// Of programs of these numbers of variables and constraints.
-    pub(super) fn new(sizes: &[[usize; 2]], shared: &[SharedVariable]) -> Self {
+    pub(super) fn new(
+        sizes: &[[usize; 2]],
+        shared: &[SharedVariable],
+        shared_rows: &[SharedRow],
+    ) -> Self {
         let has = |number: usize| shared.iter().filter(move |one| one.0[number].is_some());
         let own = sizes.iter().enumerate();
         let variables: usize = own.map(|(number, [n, _])| n - has(number).count()).sum();
@@ -54,10 +64,11 @@ impl Places {
             let first = one.first().expect("a variable of a program");
             [first, one.0.iter().flatten().count()]
         };
-        let (mut next, mut first) = (0, 0);
+        let mut next = 0;
         let mut out = Self {
             columns: Vec::with_capacity(sizes.len()),
             rows: Vec::with_capacity(sizes.len()),
+            row_count: 0,
             count: variables + shared.len(),
             first_shared: variables,
             shared: shared.iter().map(owner).collect(),
@@ -77,8 +88,27 @@ impl Places {
                 .into_iter()
                 .map(|shared| shared.unwrap_or_else(&mut own));
             out.columns.push(columns.collect());
-            out.rows.push(first..first + m);
-            first += m;
+            let mut rows = vec![(usize::MAX, 1.0); m];
+            for one in shared_rows {
+                for (place, &(of, row, factor)) in one.0.iter().enumerate() {
+                    // It stands where the first program has it.
+                    let to = match place {
+                        0 => usize::MAX,
+                        _ => out
+                            .rows
+                            .get(one.0[0].0)
+                            .map_or(0, |first| first[one.0[0].1].0),
+                    };
+                    if of == number {
+                        rows[row] = (to, factor);
+                    }
+                }
+            }
+            for (to, _) in rows.iter_mut().filter(|(to, _)| *to == usize::MAX) {
+                *to = out.row_count;
+                out.row_count += 1;
+            }
+            out.rows.push(rows.into());
         }
         out
     }
@@ -89,15 +119,24 @@ impl Places {
         self.rows.len()
     }
 
-    /// Number of rows of all programs.
-    pub(super) fn constraints(&self) -> usize {
-        self.rows.last().map_or(0, |rows| rows.end)
+    /// Multipliers of the rows of a program.
+    #[must_use]
+    pub fn row_multipliers_of(&self, number: usize, multipliers: &[f64]) -> Vec<f64> {
+        let rows = self.rows[number].iter();
+        rows.map(|&(from, factor)| factor * multipliers[from])
+            .collect()
     }
 
-    /// The rows of a program.
+    /// Multipliers of all rows from those of the programs: of shared ones those of the first.
     #[must_use]
-    pub fn rows(&self, number: usize) -> Range<usize> {
-        self.rows[number].clone()
+    pub fn row_multipliers(&self, of_parts: &[&[f64]]) -> Vec<f64> {
+        let mut all = vec![0.0; self.row_count];
+        for (rows, multipliers) in self.rows.iter().zip(of_parts).rev() {
+            for (&(to, factor), value) in rows.iter().zip(*multipliers) {
+                all[to] = value / factor;
+            }
+        }
+        all
     }
 
     /// Values of the variables of a program.
@@ -105,6 +144,12 @@ impl Places {
     pub fn values_of(&self, number: usize, x: &[f64]) -> Vec<f64> {
         let columns = self.columns[number].iter();
         columns.map(|&(from, factor)| factor * x[from]).collect()
+    }
+
+    /// The variable of the whole that one of a program is, and the factor by which its value in the program is larger.
+    #[must_use]
+    pub fn variable_of(&self, number: usize, own: usize) -> (usize, f64) {
+        self.columns[number][own]
     }
 
     /// Values of all variables, from those of the programs: of shared ones those of the first.
@@ -232,12 +277,15 @@ pub(super) struct Part<N> {
     pub(super) name: String,
     /// Variable of the whole that each of its variables is, and the factor by which its value is larger.
     pub(super) columns: Arc<[(usize, f64)]>,
-    pub(super) rows: Range<usize>,
+    /// Row of the whole to which each of its rows is added, and its factor there.
+    pub(super) rows: Arc<[(usize, f64)]>,
     /// Numbers of entries of Jacobian and Hessian.
     pub(super) entries: [usize; 2],
     /// Entries of Jacobian and Hessian whose value is larger in the whole, and the factors.
     pub(super) scaled: [Vec<(usize, f64)>; 2],
     pub(super) x: Vec<f64>,
+    /// Its rows, or their multipliers.
+    pub(super) of_rows: Vec<f64>,
     pub(super) objective: f64,
     pub(super) gradient: Vec<f64>,
     /// Factor of its objective in the Lagrangian.
