@@ -48,7 +48,9 @@ pub use loop_rates::{IndependentChanges, rates_in_loops};
 pub use midpoint::{Midpoint, Stepper};
 pub use momenta::{Start, last_momentum, rates_of_momentum};
 pub use observe::{observations, observed};
-pub use resolution::{Balance, LocalError, distance_between, local_error};
+pub use resolution::{
+    Balance, LocalError, STEPS_OF_TOUCH, ShortTouch, distance_between, local_error, short_touches,
+};
 pub use simulate::{Lengths, StepControl, go_on, simulate, simulate_by};
 pub use singular_configurations::{
     OutOfDomain, OutOfRange, largest_stretch, muscle_beyond_law, out_of_domain, out_of_range,

@@ -1,5 +1,5 @@
 //! Columns of the parts of a system in motion: rates of joints, speeds of markers, tensions and fields of muscles, currents and powers of their sources,
-//! powers of loads. What does not exist has no column.
+//! powers of loads, forces of contacts. What does not exist has no column.
 //!
 //! The current of a source of the voltage V is `V Ċ + C V̇`, of which the second part is added at instants. Where the voltage switches between
 //! two intervals, the charge `C (V₂ − V₁)` flows at an instant; it counts as a current over the half intervals beside the instant.
@@ -79,6 +79,11 @@ impl PartColumns {
         for &(source, _) in &self.loads {
             add(&model.sources[source].name, "power", "W");
         }
+        for contact in &model.contacts {
+            for (quantity, unit) in contact.columns() {
+                add(&contact.name, quantity, unit);
+            }
+        }
         columns
     }
 
@@ -100,6 +105,7 @@ impl PartColumns {
         let state = [at.x.as_slice(), at.w.as_slice()];
         let loads = self.loads.iter();
         values.extend(loads.map(|&(_, scalar)| model.load_power(scalar, state, scalars)));
+        values.extend(model.contacts.iter().flat_map(|one| one.values(state)));
         values
     }
 

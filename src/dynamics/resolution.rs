@@ -264,6 +264,68 @@ pub fn local_error(
     })
 }
 
+/// Steps of a touch from which on its rebound is resolved.
+pub const STEPS_OF_TOUCH: usize = 4;
+
+/// The shortest touch of a contact, of fewer steps than resolve it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ShortTouch {
+    /// Name of the contact.
+    pub name: String,
+    /// Time in ms at which it begins.
+    pub time: f64,
+    /// Length of the touch in ms.
+    pub duration: f64,
+    /// Its steps.
+    pub steps: usize,
+}
+
+/// Touches in the middles of steps that begin and end within a motion, the shortest of each contact where it is not resolved.
+pub fn short_touches(model: &Model, discrete: &DiscreteTrajectory) -> Vec<ShortTouch> {
+    let contacts = &model.contacts;
+    let mut shortest: Vec<Option<ShortTouch>> = vec![None; contacts.len()];
+    if contacts.is_empty() || discrete.z.is_empty() {
+        return Vec::new();
+    }
+    let mut begun: Vec<Option<usize>> = vec![None; contacts.len()];
+    let [mut here, mut next] = [(), ()].map(|()| model.action.map.instant());
+    here.z.copy_from_slice(&discrete.z[0]);
+    model.action.map.vectors(&mut here);
+    for k in 0..discrete.intervals() {
+        next.z.copy_from_slice(&discrete.z[k + 1]);
+        model.action.map.vectors(&mut next);
+        let middles: Vec<Vector> = here
+            .x
+            .iter()
+            .zip(&next.x)
+            .map(|(a, b)| (a + b) * 0.5)
+            .collect();
+        for (c, contact) in contacts.iter().enumerate() {
+            // At rest: the overlap alone counts.
+            let touches = contact.touch([&middles, &middles]).overlap > 0.0;
+            match begun[c] {
+                None if touches => begun[c] = Some(k),
+                Some(first) if !touches => {
+                    begun[c] = None;
+                    let steps = k - first;
+                    let least = shortest[c].as_ref().map_or(STEPS_OF_TOUCH, |one| one.steps);
+                    if first > 0 && steps < least {
+                        shortest[c] = Some(ShortTouch {
+                            name: contact.name.clone(),
+                            time: discrete.times[first],
+                            duration: discrete.times[k] - discrete.times[first],
+                            steps,
+                        });
+                    }
+                }
+                _ => {}
+            }
+        }
+        std::mem::swap(&mut here, &mut next);
+    }
+    shortest.into_iter().flatten().collect()
+}
+
 /// Greatest distance in mm between points of a motion at some instants and those of another motion at all of its instants.
 pub fn distance_between(
     model: &Model,

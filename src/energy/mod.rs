@@ -4,7 +4,9 @@ mod along_span;
 mod charge;
 mod coefficient;
 mod constraint;
+mod contact;
 mod elastic_law;
+mod friction;
 mod kinetic;
 mod law;
 mod limit;
@@ -22,7 +24,11 @@ pub use charge::{
 };
 pub use coefficient::Coefficient;
 pub use constraint::{Coincidence, Orthogonality};
+pub use contact::{
+    ContactDamping, ContactElasticity, ContactLaw, DampingLocal, OfForm, Surface, Touch,
+};
 pub use elastic_law::{ElasticConstants, ElasticLaw, Elasticity, NeoHooke};
+pub use friction::{ContactFriction, FrictionLocal};
 pub use kinetic::{
     DeadLoad, FollowingForce, Gravity, KineticCoupling, KineticEnergy, SurfaceCharge,
 };

@@ -3,7 +3,10 @@
 use crate::interface::handle::{Carrier, Handle, Part, builder, makers, named};
 use crate::math::{Matrix, Signal};
 use crate::mesh::Mesh;
-use crate::model::components::{BlockLoad, Faces, Load, LoadPlace, Other, Spring, Tendon};
+use crate::model::components::{
+    BlockLoad, Contact, ContactElasticLaw, ContactSide, ContactSphere, ElasticSolid, Faces, Load,
+    LoadPlace, Other, Restitution, SLIP_SPEED, Spring, Tendon,
+};
 use crate::model::system::{
     Attachment, Body, Circuit, Discretisation, ElasticLaw, ElectricConstants, Electrode,
     ElementKind, Fidelity, Joint, JointKind, JointSpring, JointStops, Marker, Material,
@@ -55,6 +58,7 @@ parts! {
     Load in components.loads: "load";
     Spring in components.springs: "spring";
     Tendon in components.tendons: "tendon";
+    Contact in components.contacts: "contact";
 }
 
 makers! {
@@ -318,6 +322,66 @@ builder! {
     damping(damping: f64) |of| of.damping = Some(damping);
     /// Length without force in mm.
     rest_length(rest_length: f64) |of| of.rest_length = rest_length;
+}
+
+impl Contact {
+    /// A sphere on a plane: a carrier, the centre in mm and the radius in mm, zero of a point; a carrier, a point of the plane in mm and its
+    /// normal towards the sphere. Without stiffness so far.
+    pub fn on_plane(
+        sphere: (impl Into<Carrier>, Vector3<f64>, f64),
+        plane: (impl Into<Carrier>, Vector3<f64>, Vector3<f64>),
+    ) -> Self {
+        let normal = plane.2.normalize();
+        let at = attachment(plane.0, plane.1);
+        touching(sphere, ContactSide::Plane { at, normal })
+    }
+
+    /// Two spheres, each a carrier, the centre in mm and the radius in mm, one of them zero of a point. Without stiffness so far.
+    pub fn of_spheres(
+        one: (impl Into<Carrier>, Vector3<f64>, f64),
+        other: (impl Into<Carrier>, Vector3<f64>, f64),
+    ) -> Self {
+        touching(one, ContactSide::Sphere(contact_sphere(other)))
+    }
+}
+
+fn contact_sphere(of: (impl Into<Carrier>, Vector3<f64>, f64)) -> ContactSphere {
+    ContactSphere {
+        centre: attachment(of.0, of.1),
+        radius: of.2,
+    }
+}
+
+fn touching(sphere: (impl Into<Carrier>, Vector3<f64>, f64), side: ContactSide) -> Contact {
+    Contact {
+        name: String::new(),
+        sphere: contact_sphere(sphere),
+        side,
+        elasticity: ContactElasticLaw::Linear(0.0),
+        smoothing: 0.0,
+        restitution: None,
+        friction: None,
+        slip_speed: SLIP_SPEED,
+    }
+}
+
+builder! {
+    impl Contact;
+    /// Force for an overlap in N/mm.
+    stiffness(stiffness: f64) |of| of.elasticity = ContactElasticLaw::Linear(stiffness);
+    /// Law of Hertz for an elastic solid on a rigid one, or for two, by Young's modulus in MPa and the Poisson ratio of each.
+    hertz(solids: &[[f64; 2]]) |of| {
+        let solid = |&[modulus, poisson_ratio]: &[f64; 2]| ElasticSolid { modulus, poisson_ratio };
+        of.elasticity = ContactElasticLaw::Hertz(solids.iter().map(solid).collect());
+    };
+    /// Width in mm of the overlap around zero over which the stiffness grows, for optimal control.
+    smoothing(width: f64) |of| of.smoothing = width;
+    /// Speed after an impact over the speed before it, at a speed in mm/ms.
+    restitution(coefficient: f64, speed: f64) |of| of.restitution = Some(Restitution { coefficient, speed });
+    /// Coefficient of friction.
+    friction(coefficient: f64) |of| of.friction = Some(coefficient);
+    /// Speed in mm/ms of slip up to which friction grows: what sticks creeps at a part of it.
+    slip_speed(speed: f64) |of| of.slip_speed = speed;
 }
 
 makers! {

@@ -92,8 +92,7 @@ impl Model {
         )?;
         let internals =
             Internals::new(&system, &presolved, &analysis, coordinates, &graph, &blocks);
-        let size = length(rest, &blocks.nodes);
-        let loops = Loops::new(rest, &graph, &reference, size)?;
+        let loops = Loops::new(rest, &graph, &reference, length(rest, &blocks.nodes))?;
         let spans = spans(&system, &presolved, &reference, &mut vectors);
         let construction = Construction {
             system: &system,
@@ -141,6 +140,7 @@ impl Model {
             graph,
             reference,
             loops,
+            contacts: made.contacts,
             present: made.present,
             left_out: made.left_out,
             system,
@@ -243,8 +243,10 @@ impl Construction<'_> {
         body::build_springs(self, &mut terms);
         loads::build(self, &mut terms);
         self.system.components.build(&mut terms);
+        let contacts = std::mem::take(&mut terms.contacts);
         let (terms, present, left_out) = terms.finish(rank);
         let mut constraints = Constraints {
+            contacts,
             present,
             left_out,
             ..Constraints::default()

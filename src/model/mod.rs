@@ -25,6 +25,7 @@ pub use constants::parameter::{
     NotSought, check as check_parameters, unit as unit_of, with_parameters,
 };
 pub use construction::Freedom;
+pub use layout::contact_reading::ContactReading;
 pub use layout::joint_sections::JointSection;
 pub(crate) use layout::node_grids::has_nodes_alone;
 pub use layout::node_grids::{NoGrids, NodeGrids};

@@ -6,6 +6,7 @@ use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm};
 use crate::math::Vector;
 use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::constants::constant::Parameter;
+use crate::model::layout::contact_reading::ContactReading;
 use crate::model::layout::internal::{InternalKind, Internals};
 use crate::model::layout::solid_block::SolidBlock;
 use crate::model::layout::variables::{Size, Variable, Variables};
@@ -62,6 +63,8 @@ pub struct Model {
     pub reference: Vec<Pose>,
     /// Closing constraints that are left out.
     pub loops: Loops,
+    /// Contacts that act, as they are read at times.
+    pub contacts: Vec<ContactReading>,
     /// Terms of components, and what calls for them.
     pub present: Vec<Present>,
     /// Terms that components could have and have not.

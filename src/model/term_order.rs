@@ -17,10 +17,11 @@ const NO_CHARGE: &str = "no charge of a lumped muscle is given, or flows through
 const NO_LOAD: &str = "no load of its kind";
 const NO_BODY: &str = "no body that moves";
 const NO_END: &str = "no joint that calls for one";
+const NO_CONTACT: &str = "no contact";
 const NO_SPRING: &str = "no spring";
 
 /// The terms of the library.
-const TERMS: [Row; 37] = [
+const TERMS: [Row; 40] = [
     ("body inertia", NO_BODY),
     ("muscle inertia", NO_MUSCLE),
     ("block inertia", NO_BLOCK),
@@ -41,6 +42,7 @@ const TERMS: [Row; 37] = [
     ("joint stops", "no joint that moves names stops"),
     ("spring elasticity", NO_SPRING),
     ("tendon elasticity", "no tendon"),
+    ("contact elasticity", NO_CONTACT),
     ("loads", NO_LOAD),
     ("surface charges", NO_LOAD),
     ("electrode charges", NO_WIRED_ELECTRODE),
@@ -53,6 +55,8 @@ const TERMS: [Row; 37] = [
     ("circuit resistance", NO_CIRCUIT),
     ("joint damping", "no joint that moves names a damping"),
     ("spring damping", NO_SPRING),
+    ("contact damping", NO_CONTACT),
+    ("contact friction", NO_CONTACT),
     ("rigid bodies", NO_BODY),
     ("joint directions", NO_END),
     ("joint points", NO_END),

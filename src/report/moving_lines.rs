@@ -1,4 +1,4 @@
-//! Lines in space that move: springs and tendons, and arrows of loads.
+//! Lines in space that move: springs, tendons and outlines of contacts, and arrows of loads.
 //!
 //! The arrow of a load is along the force from the point on which it acts, against a face under a pressure, or about the axis of the joint as an
 //! arc, as long as the load is large relative to its largest size in the motion. Surface charges have none.
@@ -34,8 +34,7 @@ pub(super) struct MovingLine<'a> {
 
 /// Springs, tendons and other components at some instants.
 pub(super) fn ties<'a>(run: &Run<'a>, instants: &[usize]) -> Vec<MovingLine<'a>> {
-    let tie = |component: &'a dyn Component| {
-        let points = component.points();
+    let tie = |(component, points): (&'a dyn Component, Vec<Attachment>)| {
         let line = |&k: &usize| {
             let at = points
                 .iter()
@@ -54,7 +53,9 @@ pub(super) fn ties<'a>(run: &Run<'a>, instants: &[usize]) -> Vec<MovingLine<'a>>
             places: instants.iter().map(line).collect(),
         }
     };
-    run.system.components.iter().map(tie).collect()
+    let components = run.system.components.iter();
+    let outlines = |one: &'a dyn Component| one.outlines().into_iter().map(move |line| (one, line));
+    components.flat_map(outlines).map(tie).collect()
 }
 
 /// The arrows of loads that ever act at some instants, of each always as many points.

@@ -4,6 +4,7 @@ use crate::control::problem::{Afterwards, Disturbed, FeedbackControl, Simulation
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
     DiscreteTrajectory, EnergyExchange, LocalError, local_error, out_of_domain, out_of_range,
+    short_touches,
 };
 use crate::math::significant;
 use crate::model::{Model, System};
@@ -120,6 +121,8 @@ impl SimulationResult {
         remarks.warn("outside_range", beyond);
         remarks.note("stops", infeasible::stop_notes(system, trajectory));
         remarks.warn("coarse_steps", warnings::warning(neglected, discrete, task));
+        let short = warnings::short_touch_warning(&short_touches(model, discrete));
+        remarks.warn("coarse_touches", short);
         remarks.warn("tolerance_exceeded", warnings::beyond(*error, task));
         let unconfirmed = self.simulated.unconfirmed;
         let unconfirmed = unconfirmed.filter(|_| self.stopped.is_none());

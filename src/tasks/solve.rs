@@ -3,7 +3,9 @@
 use crate::control::problem::{Control, ControlTask, Guess, MotionTask, SoughtHold};
 use crate::control::{Earlier, hold_obstacle};
 use crate::dynamics::trajectory::Trajectory;
-use crate::dynamics::{DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range};
+use crate::dynamics::{
+    DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range, short_touches,
+};
 use crate::model::System;
 use crate::sensitivity::{self, Gradients, NoSensitivity, Sensitivity, gradients, sensitivities};
 use crate::tasks::check::moved_markers;
@@ -231,6 +233,8 @@ fn remarks(
     let beyond = out_of_range(&optimum.model, &result.discrete);
     let beyond = warnings::stretch_range_warning(&beyond, true);
     remarks.warn("outside_range", beyond);
+    let short = short_touches(&optimum.model, &result.discrete);
+    remarks.warn("coarse_touches", warnings::short_touch_warning(&short));
     let stops = infeasible::stop_notes(&optimum.model.system, &result.trajectory);
     remarks.note("stops", stops);
     remarks.note("tracking", solve_messages::tracking_notes(&result.tracking));

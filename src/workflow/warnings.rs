@@ -10,7 +10,10 @@
 
 use crate::control::problem::Simulation;
 use crate::dynamics::trajectory::Trajectory;
-use crate::dynamics::{DiscreteTrajectory, LocalError, OutOfDomain, OutOfRange, distance_between};
+use crate::dynamics::{
+    DiscreteTrajectory, LocalError, OutOfDomain, OutOfRange, STEPS_OF_TOUCH, ShortTouch,
+    distance_between,
+};
 use crate::math::{shortest, significant};
 use crate::nlp::Status;
 use crate::workflow::integrate::{Driven, Simulated, grid};
@@ -267,6 +270,22 @@ fn listed<T>(what: &str, list: &[T], one: impl Fn(&T) -> String) -> Option<Strin
         more => format!("; and {more} more"),
     };
     (!named.is_empty()).then(|| format!("{what}: {}{more}", named.join("; ")))
+}
+
+/// One warning of touches that steps do not resolve.
+pub(crate) fn short_touch_warning(list: &[ShortTouch]) -> Option<String> {
+    let one = |touch: &ShortTouch| {
+        let (steps, plural) = (touch.steps, if touch.steps == 1 { "" } else { "s" });
+        format!(
+            "{} at {:.4} s lasts {steps} step{plural} of {} ms",
+            touch.name,
+            touch.time / 1e3,
+            rounded(touch.duration / steps as f64)
+        )
+    };
+    let what =
+        format!("touches of fewer than {STEPS_OF_TOUCH} steps, whose rebound is not resolved");
+    listed(&what, list, one)
 }
 
 /// One warning; with times where there is a motion.

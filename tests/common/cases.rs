@@ -7,7 +7,7 @@ use super::pairs::pairs;
 use super::remembering::{remembering, remembering_blocks};
 use super::systems::{
     GRAVITY, ball, blocks, branched, charged, loaded, pressed, satellite, sprung, stiffening,
-    stiffening_blocks, tied,
+    stiffening_blocks, tied, touching,
 };
 use super::timed::timed;
 use super::tracked::{energies, tracked};
@@ -261,6 +261,11 @@ pub fn cases() -> Vec<Case> {
             ),
             &|_| {},
         ),
+        case("contacts", touching(trunk(2)), &|_| {}),
+        case("contacts, free time", touching(trunk(2)), &|c| {
+            c.duration = free;
+            c.objective = every_objective();
+        }),
         case("branched tree", branched(), &|_| {}),
         case("branched tree with joint springs", sprung(), &|_| {}),
         case("branched tree that remembers", remembering(), &|c| {

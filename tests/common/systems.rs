@@ -4,7 +4,10 @@ pub use super::loaded::{loaded, pressed};
 use super::trunk;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proboscis::mesh::grid::Grid;
-use proboscis::model::components::{Load, LoadPlace, Spring, Tendon};
+use proboscis::model::components::{
+    Contact, ContactElasticLaw, ContactSide, ContactSphere, ElasticSolid, Load, LoadPlace,
+    Restitution, Spring, Tendon,
+};
 use proboscis::model::system::{
     Attachment, Body, Discretisation, ElasticLaw, ElectricConstants, Electrode, ElementKind,
     Fidelity, Glue, Joint, JointKind, JointSpring, JointStops, Marker, Material, Muscle, Potential,
@@ -55,6 +58,52 @@ pub fn tied(mut system: System) -> System {
         rest_length: 80.0,
         smoothing: 0.0,
     }];
+    system
+}
+
+/// A chain of two bodies or more with contacts that are felt from afar: with planes of the ground and of a body, and between bodies.
+pub fn touching(mut system: System) -> System {
+    let point = |body, x: f64, y: f64, z: f64| Attachment {
+        body,
+        at: Vector3::new(x, y, z),
+    };
+    let contact = |name: &str, centre, radius, side| Contact {
+        name: name.into(),
+        sphere: ContactSphere { centre, radius },
+        side,
+        elasticity: ContactElasticLaw::Linear(0.02),
+        smoothing: 60.0,
+        restitution: Some(Restitution {
+            coefficient: 0.6,
+            speed: 1.0,
+        }),
+        friction: Some(0.3),
+        slip_speed: 0.5,
+    };
+    let wall = ContactSide::Plane {
+        at: point(None, -5.0, 0.0, 0.0),
+        normal: Vector3::x(),
+    };
+    let lid = ContactSide::Plane {
+        at: point(Some(0), 0.0, 45.0, 0.0),
+        normal: Vector3::y(),
+    };
+    let other = ContactSide::Sphere(ContactSphere {
+        centre: point(Some(0), 0.0, 30.0, 5.0),
+        radius: 15.0,
+    });
+    let solid = ElasticSolid {
+        modulus: 0.01,
+        poisson_ratio: 0.4,
+    };
+    system.components.contacts = vec![
+        contact("wall", point(Some(1), 5.0, 80.0, 12.0), 8.0, wall),
+        contact("lid", point(Some(1), 3.0, 60.0, 4.0), 6.0, lid),
+        Contact {
+            elasticity: ContactElasticLaw::Hertz(vec![solid; 2]),
+            ..contact("own", point(Some(1), 0.0, 70.0, 0.0), 12.0, other)
+        },
+    ];
     system
 }
 

@@ -56,6 +56,8 @@ pub(crate) fn jet_of<E: Formula<M>, const M: usize, const ORDER: usize>(
         4 => both::<E, M, 4>(&local),
         6 => both::<E, M, 6>(&local),
         9 => both::<E, M, 9>(&local),
+        12 => both::<E, M, 12>(&local),
+        21 => both::<E, M, 21>(&local),
         count => unreachable!("no formula of {count} vectors"),
     };
     let mut jet = Jet::constant(local.value());

@@ -6,6 +6,7 @@ mod common;
 mod action;
 mod amounts;
 mod arithmetic;
+mod contacts;
 mod costs;
 mod differences;
 mod elastic_laws;

@@ -2,7 +2,9 @@
 
 use crate::scene::{folder, mistake};
 use proboscis::files::read_problem;
-use proboscis::model::components::LoadPlace;
+use proboscis::model::components::{
+    ContactElasticLaw, ContactSide, ContactSphere, ElasticSolid, LoadPlace, Restitution,
+};
 use proboscis::model::system::{ElasticLaw, Fidelity, System};
 
 const SCENE: &str = r#"{
@@ -25,6 +27,10 @@ const SCENE: &str = r#"{
     "stiffness": "200 N/m", "damping": "0.5 N s/m", "rest_length": "25 mm" } ],
   "tendons": [ { "name": "t", "through": [ { "body": "ground", "at": [0, 0, 0] }, { "body": "b", "at": ["32 mm", 0, 0] } ],
     "stiffness": "2 N/mm", "rest_length": "26 mm", "smoothing": "3 mm" } ],
+  "contacts": [ { "name": "c", "sphere": { "body": "b", "at": ["30 mm", 0, 0], "radius": "4 mm" }, "plane": { "at": ["26 mm", 0, 0], "normal": [1, 0, 0] },
+    "stiffness": "9 N/mm", "smoothing": "2 um", "restitution": { "coefficient": 0.7, "speed": "3 m/s" }, "friction": 0.4, "slip_speed": "7 mm/s" },
+    { "name": "h", "sphere": { "body": "b", "at": ["30 mm", 0, 0], "radius": "4.1 mm" }, "other": { "body": "ground", "at": ["60 mm", 0, 0], "radius": "6.1 mm" },
+    "hertz": [ { "modulus": "8 MPa", "poisson_ratio": 0.45 } ] } ],
   "loads": [ { "name": "push", "point": { "body": "b", "at": [0.03, 0, 0] }, "direction": [1, 0, 0] }, { "name": "motor", "joint": "j" } ],
   "markers": [ { "name": "tip", "body": "b", "at": [0.03, 0, 0] } ]
 }"#;
@@ -76,6 +82,18 @@ const CASES: &[Case] = &[
     ("\"32 mm\"", "0", "tendons[0].through[1].at", |s| s.components.tendons[0].through[1] = s.components.tendons[0].through[0]),
     ("[ { \"body\": \"ground\", \"at\": [0, 0, 0] }, {", "[ {", "tendons[0].through", |s| s.components.tendons[0].through.truncate(1)),
     ("\"name\": \"t\"", "\"name\": \"s\"", "tendons[0].name", |s| s.components.tendons[0].name = "s".to_owned()),
+    ("\"9 N/mm\"", "\"-9 N/mm\"", "contacts[0].stiffness", |s| s.components.contacts[0].elasticity = ContactElasticLaw::Linear(-9.0)),
+    ("\"2 um\"", "\"-2 um\"", "contacts[0].smoothing", |s| s.components.contacts[0].smoothing = -2e-3),
+    ("\"coefficient\": 0.7", "\"coefficient\": 1.7", "contacts[0].restitution.coefficient", |s| restitution(s).coefficient = 1.7),
+    ("\"3 m/s\"", "0", "contacts[0].restitution.speed", |s| restitution(s).speed = 0.0),
+    ("\"friction\": 0.4", "\"friction\": -0.4", "contacts[0].friction", |s| s.components.contacts[0].friction = Some(-0.4)),
+    ("\"7 mm/s\"", "0", "contacts[0].slip_speed", |s| s.components.contacts[0].slip_speed = 0.0),
+    ("\"4 mm\"", "\"-4 mm\"", "contacts[0].sphere.radius", |s| s.components.contacts[0].sphere.radius = -4.0),
+    (", \"radius\": \"4.1 mm\"", "", "contacts[1].sphere.radius", |s| s.components.contacts[1].sphere.radius = 0.0),
+    ("\"6.1 mm\"", "\"-6 mm\"", "contacts[1].other.radius", |s| s.components.contacts[1].side = ContactSide::Sphere(ContactSphere { radius: -6.0, ..Default::default() })),
+    ("\"8 MPa\"", "0", "contacts[1].hertz[0].modulus", |s| hertz(s)[0].modulus = 0.0),
+    ("0.45", "0.6", "contacts[1].hertz[0].poisson_ratio", |s| hertz(s)[0].poisson_ratio = 0.6),
+    ("[ { \"modulus\": \"8 MPa\", \"poisson_ratio\": 0.45 } ]", "[]", "contacts[1].hertz", |s| hertz(s).clear()),
     ("\"name\": \"motor\"", "\"name\": \"push\"", "loads[1].name", |s| s.components.loads[1].name = "push".to_owned()),
     ("\"name\": \"motor\"", "\"name\": \"m\"", "loads[1].name", |s| s.components.loads[1].name = "m".to_owned()),
     ("\"name\": \"tip\"", "\"name\": \"\"", "markers[0].name", |s| s.markers[0].name = String::new()),
@@ -93,6 +111,17 @@ const CASES: &[Case] = &[
     ("\"10 kPa\"", "0", "materials.foam.maxwell[0].shear_modulus", |s| foam(s, |m| m.maxwell.get_mut(0).unwrap().shear_modulus = 0.0)),
     ("[0.5, 2]", "[1.5, 2]", "materials.foam.stretch_range", |s| foam(s, |m| m.stretch_range = Some([1.5, 2.0]))),
 ];
+
+fn restitution(system: &mut System) -> &mut Restitution {
+    system.components.contacts[0].restitution.as_mut().unwrap()
+}
+
+fn hertz(system: &mut System) -> &mut Vec<ElasticSolid> {
+    match &mut system.components.contacts[1].elasticity {
+        ContactElasticLaw::Hertz(solids) => solids,
+        ContactElasticLaw::Linear(_) => panic!("a contact after Hertz"),
+    }
+}
 
 fn elements(system: &mut System) -> &mut proboscis::model::system::Discretisation {
     match &mut system.muscles[1].fidelity {

@@ -22,9 +22,9 @@ const LIMITS: &str = "docs/accuracy.md#limits-of-validity";
 #[test]
 fn what_is_not_offered_is_answered_so() {
     for (word, said) in [
-        ("contact", "there is no contact"),
-        ("contacts", "there is no contact"),
-        ("Friction", "there is no friction"),
+        ("collision", "\"contacts\" are pairs that a scene names"),
+        ("collisions", "\"contacts\" are pairs that a scene names"),
+        ("Stiction", "which creeps where it sticks"),
         ("temperature", "there is no temperature"),
         ("obstacles", "keep markers out of regions"),
         ("drag", "there is no fluid"),

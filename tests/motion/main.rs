@@ -12,6 +12,7 @@ mod columns;
 mod component_files;
 mod components;
 mod conserve;
+mod contact;
 mod dissipation;
 mod elastic_laws;
 mod estimates;

@@ -23,13 +23,14 @@ const UNITS: [&str; 21] = [
 ];
 
 /// Constants with a unit: factors between units, constants of nature, defaults that a problem may change, and what only catches slips.
-const WITH_UNITS: [(&str, &str); 14] = [
+const WITH_UNITS: [(&str, &str); 15] = [
     ("control/prescribed.rs", "REST"),
     ("control/regulator.rs", "DEGREE"),
     ("control/regulator.rs", "INTEGRAL_TIME"),
     ("control/regulator.rs", "RATE_TIME"),
     ("control/transcription/cost_rows.rs", "MILLISECOND"),
     ("control/transcription/cost_rows.rs", "MILLIJOULE"),
+    ("model/components/contact.rs", "SLIP_SPEED"),
     ("model/system/check.rs", "DENSEST"),
     ("model/system/check.rs", "SHORTEST_SPAN"),
     ("model/constants/constant.rs", "ROUNDING"),

@@ -167,12 +167,12 @@ const LIMITS: &str = "docs/accuracy.md#limits-of-validity";
 /// Words in the singular, in lower case with underscores, and what is said of them.
 const TABLE: [(&[&str], &str); 6] = [
     (
-        &["contact", "collision", "impact", "restitution", "obstacle"],
-        "there is no contact; \"limits\" of a \"control\" keep markers out of regions",
+        &["collision", "impact", "obstacle"],
+        "\"contacts\" are pairs that a scene names; \"limits\" of a \"control\" keep markers out of regions",
     ),
     (
-        &["friction", "coulomb_friction", "stiction"],
-        "there is no friction; \"damping\" and \"viscosity\" are viscous",
+        &["coulomb_friction", "stiction"],
+        "\"contacts\" have a \"friction\", which creeps where it sticks; joints have a viscous \"damping\"",
     ),
     (
         &["fluid", "drag", "aerodynamics", "buoyancy"],

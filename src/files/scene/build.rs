@@ -3,6 +3,7 @@
 use crate::files::json::path::JsonPath;
 use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::scene::body::{body, check_connected};
+use crate::files::scene::contact::contact;
 use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::joint::joint;
 use crate::files::scene::load::{Carriers, load};
@@ -77,6 +78,9 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
             })?,
             tendons: lists.build("tendons", &scene.tendons, |spec, scope| {
                 tendon(spec, &body_names, scope)
+            })?,
+            contacts: lists.build("contacts", &scene.contacts, |spec, scope| {
+                contact(spec, &body_names, scope)
             })?,
             loads,
             others: Vec::new(),

@@ -1,6 +1,6 @@
 //! The scene file: its types as written (`spec`, `spec_solids`, `point`) and their conversion to a [`System`](crate::model::System).
 //!
-//! - `build`: the scene; `body`, `joint`, `material`, `muscle`, `spring`, `load`: its parts, each described and converted in one file.
+//! - `build`: the scene; `body`, `joint`, `material`, `muscle`, `spring`, `contact`, `load`: its parts, each described and converted in one file.
 //! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `names`: resolution of names.
 //! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
@@ -8,6 +8,7 @@
 pub(crate) mod body;
 pub(crate) mod build;
 pub(crate) mod constants;
+pub mod contact;
 pub(crate) mod electrodes;
 pub(crate) mod expand;
 pub mod joint;

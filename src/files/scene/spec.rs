@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::files::json::objects::objects;
+use crate::files::scene::contact::ContactSpec;
 use crate::files::scene::joint::JointSpec;
 use crate::files::scene::load::LoadSpec;
 use crate::files::scene::material::MaterialSpec;
@@ -36,6 +37,8 @@ objects! {
         pub springs?: Vec<SpringSpec>,
         /// Elastic cables through points.
         pub tendons?: Vec<TendonSpec>,
+        /// Contacts of spheres with planes or other spheres.
+        pub contacts?: Vec<ContactSpec>,
         /// Forces and torques whose sizes a problem gives or seeks.
         pub loads?: Vec<LoadSpec>,
         /// Points whose motion is reported.

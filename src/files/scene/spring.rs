@@ -10,7 +10,7 @@ use crate::model::system::Attachment;
 objects! {
     /// A linear spring, a damper, or both, between two points: force k (length − rest length) + c (rate of the length).
     pub struct SpringSpec {
-        /// Name, unique among springs and tendons.
+        /// Name, unique among springs, tendons and contacts.
         pub name: String,
         /// One end.
         pub from: PointSpec,
@@ -26,7 +26,7 @@ objects! {
 
     /// An elastic cable that slides without friction through points and takes no compression: tension k max(length − rest length, 0).
     pub struct TendonSpec {
-        /// Name, unique among springs and tendons.
+        /// Name, unique among springs, tendons and contacts.
         pub name: String,
         /// The points, two or more: the ends, and between them those that it slides through.
         pub through: Vec<PointSpec>,

@@ -16,7 +16,7 @@ pub trait Component: Debug + Send + Sync {
     /// Name, unique among the components of a scene.
     fn name(&self) -> &str;
 
-    /// The points that it ties together, in the order in which a picture joins them by lines.
+    /// The points that it ties together.
     fn points(&self) -> Vec<Attachment>;
 
     /// Checks its constants.
@@ -42,6 +42,11 @@ pub trait Component: Debug + Send + Sync {
     /// Values of these columns where its points are at the given places in mm.
     fn observe(&self, _places: &[Vector3<f64>]) -> Vec<f64> {
         Vec::new()
+    }
+
+    /// Lines that pictures draw, each through material points in their order: where not otherwise one through its points.
+    fn outlines(&self) -> Vec<Vec<Attachment>> {
+        vec![self.points()]
     }
 
     /// Returns true if pictures draw a coil between its two points, in place of a line.

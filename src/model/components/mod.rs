@@ -3,6 +3,7 @@
 pub(super) mod body;
 pub(super) mod circuit;
 pub(super) mod component;
+pub(super) mod contact;
 pub(super) mod load;
 pub(super) mod muscle;
 pub(super) mod muscle_constants;
@@ -10,6 +11,9 @@ mod spring;
 mod tendon;
 
 pub use component::{Component, Other};
+pub use contact::{
+    Contact, ContactElasticLaw, ContactSide, ContactSphere, ElasticSolid, Restitution, SLIP_SPEED,
+};
 pub use load::{BlockLoad, Faces, Load, LoadPlace};
 pub use muscle_constants::capacitance;
 pub use spring::Spring;
@@ -24,6 +28,8 @@ pub struct Components {
     pub springs: Vec<Spring>,
     /// Tendons.
     pub tendons: Vec<Tendon>,
+    /// Contacts.
+    pub contacts: Vec<Contact>,
     /// Loads: forces and torques.
     pub loads: Vec<Load>,
     /// Those that a user of the library defines.
@@ -39,6 +45,7 @@ impl Components {
         for (index, tendon) in self.tendons.iter().enumerate() {
             tendon.add(Some(index), terms);
         }
+        self.contacts.iter().for_each(|one| one.build(terms));
         self.others.iter().for_each(|other| other.0.build(terms));
     }
 
@@ -46,15 +53,17 @@ impl Components {
     pub fn iter(&self) -> impl Iterator<Item = &dyn Component> {
         let springs = self.springs.iter().map(|spring| spring as &dyn Component);
         let tendons = self.tendons.iter().map(|tendon| tendon as &dyn Component);
+        let contacts = self.contacts.iter().map(|one| one as &dyn Component);
         let others = self.others.iter().map(|other| other.0.as_ref());
-        springs.chain(tendons).chain(others)
+        springs.chain(tendons).chain(contacts).chain(others)
     }
 
     /// Numbers of components of each kind.
-    pub fn counts(&self) -> [(&'static str, usize); 4] {
+    pub fn counts(&self) -> [(&'static str, usize); 5] {
         [
             ("springs", self.springs.len()),
             ("tendons", self.tendons.len()),
+            ("contacts", self.contacts.len()),
             ("loads", self.loads.len()),
             ("other components", self.others.len()),
         ]

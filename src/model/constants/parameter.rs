@@ -18,6 +18,7 @@ fn moved_otherwise(system: &System) -> Option<&'static str> {
             system.muscles.iter().any(of_elements),
             "muscles of finite elements",
         ),
+        (!components.contacts.is_empty(), "contacts"),
         (!components.others.is_empty(), "components of other kinds"),
         (
             !Graph::new(system).loops().is_empty(),

@@ -1,5 +1,6 @@
 //! Variables of a model and their places: coordinates, internal ones, nodes of blocks, states read from instants.
 
+pub(super) mod contact_reading;
 pub(super) mod internal;
 pub(super) mod joint_sections;
 pub(super) mod node_grids;

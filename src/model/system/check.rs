@@ -44,6 +44,7 @@ impl System {
         let others = [
             named("springs", &self.components.springs, |spring| &spring.name),
             named("tendons", &self.components.tendons, |tendon| &tendon.name),
+            named("contacts", &self.components.contacts, |one| &one.name),
             named("others", &self.components.others, |other| other.0.name()),
         ];
         let others = others.concat();

@@ -17,6 +17,7 @@ use crate::kinematics::{MaterialVector, Pose, Vectors};
 use crate::math::Vector;
 use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::{Read, Sought};
+use crate::model::layout::contact_reading::ContactReading;
 use crate::model::layout::variables::Variables;
 use crate::model::system::bodies::Attachment;
 use crate::model::system::maxwell::Response;
@@ -55,6 +56,8 @@ pub struct Terms<'a> {
     of_motion: bool,
     response: Response,
     sought: Sought,
+    /// Readings of the contacts that were added.
+    pub(super) contacts: Vec<ContactReading>,
     collected: Vec<Collected>,
     present: Vec<Present>,
     left_out: Vec<LeftOut>,
@@ -144,6 +147,7 @@ impl<'a> Terms<'a> {
             of_motion,
             response,
             sought,
+            contacts: Vec::new(),
             collected: Vec::new(),
             present: Vec::new(),
             left_out: Vec::new(),

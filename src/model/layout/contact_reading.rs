@@ -1,0 +1,61 @@
+//! Contacts that act, read at vectors and their rates: overlap, forces and slip.
+
+use crate::energy::{ContactFriction, ContactLaw, Touch};
+use crate::math::Vector;
+
+/// A contact that is read at times: a placed configuration with rates of the vectors.
+#[derive(Clone, Debug)]
+pub struct ContactReading {
+    /// Name of the contact.
+    pub name: String,
+    /// Its normal force.
+    pub(crate) law: ContactLaw,
+    /// Span between both sides.
+    pub(crate) span: usize,
+    /// Normal of a plane of a body.
+    pub(crate) normal: Option<usize>,
+    /// Friction with the vectors that it reads.
+    pub(crate) friction: Option<(ContactFriction, Vec<usize>)>,
+}
+
+impl ContactReading {
+    /// The vectors that the normal force reads.
+    pub(crate) fn normal_vectors(&self) -> Vec<usize> {
+        [self.span].into_iter().chain(self.normal).collect()
+    }
+
+    /// Names and units of its values.
+    pub fn columns(&self) -> &'static [(&'static str, &'static str)] {
+        const ALL: [(&str, &str); 4] = [
+            ("force", "N"),
+            ("gap", "mm"),
+            ("friction", "N"),
+            ("slip", "mm/ms"),
+        ];
+        match self.friction {
+            Some(_) => &ALL,
+            None => &ALL[..2],
+        }
+    }
+
+    /// Overlap and normal force at vectors and their rates.
+    pub fn touch(&self, [x, rates]: [&[Vector]; 2]) -> Touch {
+        let ends = [x, rates].map(|of| {
+            [
+                of[self.span],
+                self.normal.map_or(Vector::zeros(), |n| of[n]),
+            ]
+        });
+        self.law.touch(ends)
+    }
+
+    /// Normal force in N and gap in mm, negative where both overlap; with friction its size in N, and the slip in mm/ms.
+    pub fn values(&self, at: [&[Vector]; 2]) -> Vec<f64> {
+        let Touch { overlap, force } = self.touch(at);
+        let friction = self.friction.iter().flat_map(|(friction, vectors)| {
+            let read = |all: &[Vector]| vectors.iter().map(|&v| all[v]).collect::<Vec<_>>();
+            friction.of_rates(&read(at[0]), &read(at[1]))
+        });
+        [force, -overlap].into_iter().chain(friction).collect()
+    }
+}

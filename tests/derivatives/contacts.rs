@@ -1,0 +1,227 @@
+//! Energies and virtual works of contacts: their derivatives are those of naive formulas, within the ramp of the overlap and beyond it.
+
+use crate::formulas::law;
+use crate::naive_formulas::{Formula, along, polarised, squared_length, three};
+use nalgebra::Vector3;
+use num_dual::DualNum;
+use proboscis::energy::{ContactDamping, ContactElasticity, ContactFriction, ContactLaw, Surface};
+
+/// s/w = y/2 + 5/64 + 15/16 y² − 5/4 y⁴ + y⁶ of y = x/w: the half of x, and an even part.
+fn ramp<D: DualNum<f64> + Copy>(x: D, width: f64) -> D {
+    let y = x / width;
+    if y.re() <= -0.5 {
+        return x * 0.0;
+    }
+    if y.re() >= 0.5 {
+        return x;
+    }
+    let square = y * y;
+    let even = square * (square * (square - 1.25) + 0.9375) + 0.078125;
+    (y * 0.5 + even) * width
+}
+
+/// Distance of the centre from the plane or the other centre.
+fn height<D: DualNum<f64> + Copy>(surface: Surface, r: [D; 3], n: [D; 3]) -> D {
+    match surface {
+        Surface::Plane(n) => r[0] * n.x + r[1] * n.y + r[2] * n.z,
+        Surface::MovingPlane => polarised(r, n),
+        Surface::Sphere => squared_length(r).sqrt(),
+    }
+}
+
+fn elastic<D: DualNum<f64> + Copy>(law: &ContactLaw, height: D) -> D {
+    let s = ramp(-height + law.distance, law.smoothing);
+    s.powf(law.exponent + 1.0) * (law.stiffness / (law.exponent + 1.0))
+}
+
+/// Vectors by number, of which those beyond the last are zero.
+fn vectors<D: DualNum<f64> + Copy>(p: &[D], readings: usize) -> Vec<Vec<[D; 3]>> {
+    let each = p.len() / readings;
+    let read = |part: &[D]| part.chunks(3).map(|v| three(v, 0)).collect();
+    p.chunks(each).map(read).collect()
+}
+
+fn second<D: DualNum<f64> + Copy>(of: &[[D; 3]], place: usize) -> [D; 3] {
+    of.get(place).copied().unwrap_or([of[0][0] * 0.0; 3])
+}
+
+/// Normal force, the growth of it, and the rate of the height of a variation.
+fn normal<D: DualNum<f64> + Copy>(
+    law: &ContactLaw,
+    [varied, at, rates]: [&[[D; 3]]; 3],
+    place: usize,
+) -> [D; 3] {
+    let six = |of: &[[D; 3]]| -> [D; 6] {
+        let n = second(of, place);
+        std::array::from_fn(|i| if i < 3 { of[0][i] } else { n[i - 3] })
+    };
+    let of_motion = |motion: &[[D; 3]]| {
+        along(six(at), six(motion), |x| {
+            let moving = |p: &[num_dual::Dual<D, f64>; 6], at: usize| three(p, at);
+            match law.surface {
+                Surface::Plane(n) => x[0] * n.x + x[1] * n.y + x[2] * n.z,
+                Surface::MovingPlane => polarised(moving(&x, 0), moving(&x, 3)),
+                Surface::Sphere => squared_length(moving(&x, 0)).sqrt(),
+            }
+        })
+    };
+    let place = height(law.surface, at[0], second(at, place));
+    let force = along([place], [place * 0.0 - 1.0], |h| elastic(law, h[0]));
+    let growth = ramp(of_motion(rates) * -law.damping + 1.0, law.release);
+    [force, growth, of_motion(varied)]
+}
+
+macro_rules! formulas {
+    ($($of:ident: $arguments:literal, $count:literal;)*) => {
+        $(impl Formula<$arguments> for $of {
+            fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; $arguments]) -> D {
+                self.written_again(&vectors(p, $count))
+            }
+        })*
+    };
+}
+
+formulas! {
+    ContactElasticity: 3, 1;
+    ContactElasticity: 6, 1;
+    ContactDamping: 9, 3;
+    ContactDamping: 18, 3;
+    ContactFriction: 9, 3;
+    ContactFriction: 36, 3;
+    ContactFriction: 63, 3;
+}
+
+/// A formula of vectors by reading and number.
+trait WrittenAgain {
+    fn written_again<D: DualNum<f64> + Copy>(&self, x: &[Vec<[D; 3]>]) -> D;
+}
+
+impl WrittenAgain for ContactElasticity {
+    fn written_again<D: DualNum<f64> + Copy>(&self, x: &[Vec<[D; 3]>]) -> D {
+        elastic(&self.0, height(self.0.surface, x[0][0], second(&x[0], 1)))
+    }
+}
+
+impl WrittenAgain for ContactDamping {
+    fn written_again<D: DualNum<f64> + Copy>(&self, x: &[Vec<[D; 3]>]) -> D {
+        let [force, growth, lift] = normal(&self.0, [&x[0], &x[1], &x[2]], 1);
+        force * (growth - 1.0) * lift
+    }
+}
+
+fn cross<D: DualNum<f64> + Copy>(a: [D; 3], b: [D; 3]) -> [D; 3] {
+    let product = |i: usize, j: usize| a[i] * b[j] - a[j] * b[i];
+    [product(1, 2), product(2, 0), product(0, 1)]
+}
+
+fn sum<D: DualNum<f64> + Copy>(a: [D; 3], b: [D; 3], factor: f64) -> [D; 3] {
+    std::array::from_fn(|i| a[i] + b[i] * factor)
+}
+
+/// The part of a vector across another one.
+fn across<D: DualNum<f64> + Copy>(u: [D; 3], n: [D; 3]) -> [D; 3] {
+    let part = polarised(u, n) / squared_length(n);
+    std::array::from_fn(|i| u[i] - n[i] * part)
+}
+
+/// Slip of rates or variations, along a plane of a body by its two components.
+fn slip<D: DualNum<f64> + Copy>(of: &ContactFriction, at: &[[D; 3]], motion: &[[D; 3]]) -> [D; 3] {
+    let zero = at[0][0] * 0.0;
+    let first = if of.law.surface == Surface::MovingPlane {
+        4
+    } else {
+        1
+    };
+    let mut spin = [zero; 3];
+    for (v, radius) in (first..at.len()).zip(of.radii.iter().flat_map(|r| [r; 3])) {
+        spin = sum(spin, cross(at[v], motion[v]), 0.5 * radius);
+    }
+    match of.law.surface {
+        Surface::Plane(n) => {
+            let n = [n.x, n.y, n.z].map(|n| zero + n);
+            across(sum(motion[0], cross(spin, n), -1.0), n)
+        }
+        Surface::Sphere => {
+            let lever = cross(spin, at[0]);
+            across(sum(motion[0], lever, -1.0 / of.size), at[0])
+        }
+        Surface::MovingPlane => {
+            // The rate of t·r and R times that of n along t.
+            let along_tangent = |t: usize| {
+                polarised(motion[t], at[0])
+                    + polarised(at[t], motion[0])
+                    + polarised(at[t], motion[3]) * of.size
+            };
+            let [a, b] = [polarised(spin, at[2]), polarised(spin, at[1])];
+            [along_tangent(1) - a, along_tangent(2) + b, zero]
+        }
+    }
+}
+
+impl WrittenAgain for ContactFriction {
+    fn written_again<D: DualNum<f64> + Copy>(&self, x: &[Vec<[D; 3]>]) -> D {
+        let [force, growth, _] = normal(&self.law, [&x[0], &x[1], &x[2]], 3);
+        let [slip, virtual_slip] = [&x[2], &x[0]].map(|motion| slip(self, &x[1], motion));
+        let speed = (squared_length(slip) + self.slip_speed * self.slip_speed).sqrt();
+        force * growth * polarised(slip, virtual_slip) / speed * -self.coefficient
+    }
+}
+
+/// Linear within a wide ramp, and after Hertz beyond a narrow one.
+fn laws(surface: Surface) -> [ContactLaw; 2] {
+    let law = |exponent, distance, smoothing| ContactLaw {
+        surface,
+        distance,
+        stiffness: 0.7,
+        exponent,
+        smoothing,
+        damping: 0.08,
+        release: 0.4,
+    };
+    [law(1.0, 1.3, 14.0), law(1.5, 6.0, 0.2)]
+}
+
+const NORMAL: Vector3<f64> = Vector3::new(0.48, 0.6, 0.64);
+
+#[test]
+fn normal_forces_have_the_derivatives_of_naive_formulas() {
+    for surface in [Surface::Plane(NORMAL), Surface::Sphere] {
+        for of in laws(surface) {
+            law::<_, 3>("contact", &ContactElasticity(of), 0.4, 1.1);
+            law::<_, 9>("contact damping", &ContactDamping(of), 0.4, 1.1);
+        }
+    }
+    for of in laws(Surface::MovingPlane) {
+        law::<_, 6>("contact", &ContactElasticity(of), 0.4, 1.1);
+        law::<_, 18>("contact damping", &ContactDamping(of), 0.4, 1.1);
+    }
+}
+
+#[test]
+fn friction_has_the_derivatives_of_its_naive_formula() {
+    let tangents = [
+        Vector3::new(0.8, 0.0, -0.6),
+        Vector3::new(-0.36, 0.8, -0.48),
+    ];
+    for surface in [
+        Surface::Plane(NORMAL),
+        Surface::Sphere,
+        Surface::MovingPlane,
+    ] {
+        for of in laws(surface) {
+            let friction = ContactFriction {
+                law: of,
+                tangents,
+                radii: [0.9, 0.4],
+                size: 1.3,
+                coefficient: 0.3,
+                slip_speed: 0.7,
+            };
+            if surface != Surface::MovingPlane {
+                law::<_, 9>("friction", &friction, 0.4, 1.1);
+            }
+            law::<_, 36>("friction", &friction, 0.4, 1.1);
+            law::<_, 63>("friction", &friction, 0.4, 1.1);
+        }
+    }
+}
