@@ -66,6 +66,7 @@ class Questions:
         loads: Mapping[Any, entries.Signal] | None = None,
         motions: Sequence[entries.Motion] | None = None,
         objective: entries.Objective | None = None,
+        phases: Sequence[entries.Motion] | None = None,
         sensitivity: Mapping[Any, entries.Sensitivity] | None = None,
         shared_inputs: Sequence[Text] | None = None,
         solver: entries.Solver | None = None,
@@ -94,6 +95,9 @@ class Questions:
         * `motions`: Several motions in one optimisation: what `free` seeks is the same in all of them, and the objective is the sum of
           theirs. Each names the keys that are other ones in it.
         * `objective`: Objective that is minimised.
+        * `phases`: Phases of one motion, each of which goes on where the one before ended: the first one begins at `start`, the last one ends
+          at `goal`. Each has its `duration`, given or with bounds and a guess, and the keys that are other ones in it; `duration` beside them
+          is that of all together.
         * `sensitivity`: Numbers by which the optimum is differentiated, by their paths: constants of the scene, such as
           `materials.silicone.shear_modulus`, and `duration`, `goal.joint_angles.NAME`, `goal.markers.NAME[0]`, `goal.rest_at_voltages.NAME`,
           `start.joint_angles.NAME`, `start.joint_rates.NAME`, `start.rest_at_voltages.NAME`, `voltage_bounds[1]`, `load_bounds.NAME[1]`,
@@ -124,6 +128,7 @@ class Questions:
                 "loads": loads,
                 "motions": motions,
                 "objective": objective,
+                "phases": phases,
                 "sensitivity": sensitivity,
                 "shared_inputs": shared_inputs,
                 "solver": solver,

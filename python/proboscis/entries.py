@@ -80,6 +80,32 @@ class Circuit(TypedDict):
     """Resistance in series, SI unit Ohm; without it the electrodes have the voltage of the source."""
 
 
+class ContactPlane(TypedDict):
+    """A plane of a body."""
+
+    at: Sequence[Quantity] | Numbers
+    """A point of it, SI unit m."""
+
+    body: NotRequired[Text]
+    """Name of the body; the ground where not written."""
+
+    normal: Sequence[float] | Numbers
+    """Normal in the ground frame, of any length, towards the sphere."""
+
+
+class ContactSphere(TypedDict):
+    """A sphere of a body."""
+
+    at: Sequence[Quantity] | Numbers
+    """Centre, SI unit m."""
+
+    body: Text
+    """Name of the body, or `ground`."""
+
+    radius: NotRequired[Quantity]
+    """Radius, SI unit m; a point where not written."""
+
+
 class Corners(TypedDict):
     """Two corners of a box."""
 
@@ -109,6 +135,16 @@ Dielectric: TypeAlias = "Literal['first_order', 'ideal']"
 
 Division: TypeAlias = "int | Sequence[Layer]"
 """Division of a direction of a box."""
+
+
+class ElasticSolid(TypedDict):
+    """Elastic constants of a solid."""
+
+    modulus: Quantity
+    """Young's modulus, SI unit Pa."""
+
+    poisson_ratio: float
+    """Poisson ratio, up to 0.5."""
 
 
 class Electrode(TypedDict):
@@ -354,6 +390,16 @@ Ramp = TypedDict(
     },
 )
 """Linear between two values, constant before and after."""
+
+
+class Restitution(TypedDict):
+    """Restitution of an impact."""
+
+    coefficient: float
+    """Speed after the impact over the speed before it, above 0 and up to 1."""
+
+    speed: Quantity
+    """Speed before the impact at which it is so, SI unit m/s."""
 
 
 class Rotation(TypedDict):
@@ -1803,6 +1849,12 @@ class Control(TypedDict):
 
     objective: NotRequired[Objective]
     """Objective that is minimised."""
+
+    phases: NotRequired[Sequence[Motion]]
+    """Phases of one motion, each of which goes on where the one before ended: the first one begins at `start`, the last one ends at `goal`. Each
+    has its `duration`, given or with bounds and a guess, and the keys that are other ones in it; `duration` beside them is that of all
+    together.
+    """
 
     sensitivity: NotRequired[Mapping[Any, Sensitivity]]
     """Numbers by which the optimum is differentiated, by their paths: constants of the scene, such as `materials.silicone.shear_modulus`, and

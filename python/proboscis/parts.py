@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from proboscis import entries
     from proboscis.entries import Numbers, Quantity, Text
 
-__all__ = ["GROUND", "Part", "Material", "Body", "Joint", "Muscle", "Solid", "Spring", "Tendon", "Load", "Marker"]
+__all__ = ["GROUND", "Part", "Material", "Body", "Joint", "Muscle", "Solid", "Spring", "Tendon", "Contact", "Load", "Marker"]
 
 
 class Material(Part):
@@ -384,6 +384,52 @@ class Tendon(Part):
                 "through": through,
                 "rest_length": rest_length,
                 "smoothing": smoothing,
+            },
+        )
+
+
+class Contact(Part):
+    """A sphere or a point that touches a `plane` or an `other` sphere, with a `stiffness` or the law of `hertz`.
+
+    * `sphere`: The sphere.
+    * `friction`: Coefficient of friction; without it the contact is smooth.
+    * `hertz`: Law of Hertz for elastic solids, one of them on a rigid one or two; or give `stiffness`.
+    * `other`: The other sphere that it touches; or give `plane`.
+    * `plane`: The plane that it touches; or give `other`.
+    * `restitution`: Restitution, from which the damping follows; without it the contact does not damp.
+    * `slip_speed`: Speed of slip up to which friction grows, SI unit m/s; 0.1 mm/s where not written. What sticks creeps at a part of it.
+    * `smoothing`: Width of the overlap around zero over which the stiffness grows, SI unit m, for optimal control; it jumps where not written.
+    * `stiffness`: Force for an overlap of the undeformed shapes, SI unit N/m; or give `hertz`.
+    """
+
+    kind, noun = "contacts", "contact"
+
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        sphere: entries.ContactSphere,
+        friction: float | None = None,
+        hertz: Sequence[entries.ElasticSolid] | None = None,
+        other: entries.ContactSphere | None = None,
+        plane: entries.ContactPlane | None = None,
+        restitution: entries.Restitution | None = None,
+        slip_speed: Quantity | None = None,
+        smoothing: Quantity | None = None,
+        stiffness: Quantity | None = None,
+    ) -> None:
+        super().__init__(
+            name,
+            {
+                "sphere": sphere,
+                "friction": friction,
+                "hertz": hertz,
+                "other": other,
+                "plane": plane,
+                "restitution": restitution,
+                "slip_speed": slip_speed,
+                "smoothing": smoothing,
+                "stiffness": stiffness,
             },
         )
 

@@ -75,7 +75,7 @@ pub(super) fn shared(
 pub(super) struct Durations {
     /// For each phase whose duration is sought the column of its interval length and the duration of a length of one there.
     sought: Vec<(usize, usize, f64)>,
-    /// What they have together in ms.
+    /// Their sum in ms.
     left: f64,
 }
 
