@@ -320,20 +320,6 @@ impl ContactDamping {
     }
 }
 
-impl<const N: usize> Local for DampingLocal<N> {
-    fn value(&self) -> f64 {
-        self.work.value
-    }
-
-    fn plain<const NV: usize>(&self) -> impl Derivatives {
-        *self
-    }
-
-    fn along<const NV: usize>(&self) -> impl Derivatives {
-        *self
-    }
-}
-
 impl<const N: usize> Derivatives for DampingLocal<N> {
     fn force(&self, i: usize) -> Vector3<f64> {
         self.rows[i / N][i % N] * self.work.gradient
@@ -361,9 +347,9 @@ pub(super) fn curved<const Y: usize>(a: usize, b: usize, gradient: &SMatrix<f64,
     }
 }
 
-/// Implements both for numbers of vectors.
-macro_rules! contact {
-    ($($vectors:literal: $arguments:literal, $readings:literal;)*) => {
+/// Implements the energy for numbers of vectors.
+macro_rules! elasticity {
+    ($($arguments:literal)*) => {
         $(
             impl Energy<$arguments> for ContactElasticity {
                 type Local<const ORDER: usize> = OfForm;
@@ -376,9 +362,32 @@ macro_rules! contact {
                     OfForm::new(&self.0, p, w)
                 }
             }
+        )*
+    };
+}
 
-            impl Energy<$readings> for ContactDamping {
-                type Local<const ORDER: usize> = DampingLocal<$vectors>;
+elasticity! { 3 6 }
+
+/// Implements a virtual work for numbers of vectors, each of which is read three times: its variation, midpoint and rate.
+macro_rules! virtual_work {
+    ($formula:ident as $local:ident: $($vectors:literal of $arguments:literal),*) => {
+        impl<const N: usize> Local for $local<N> {
+            fn value(&self) -> f64 {
+                self.work.value
+            }
+
+            fn plain<const NV: usize>(&self) -> impl Derivatives {
+                *self
+            }
+
+            fn along<const NV: usize>(&self) -> impl Derivatives {
+                *self
+            }
+        }
+
+        $(
+            impl Energy<$arguments> for $formula {
+                type Local<const ORDER: usize> = $local<$vectors>;
 
                 const READINGS: usize = 3;
                 const VIRTUAL: usize = $vectors;
@@ -389,9 +398,9 @@ macro_rules! contact {
 
                 fn at<const ORDER: usize>(
                     &self,
-                    p: &SVector<f64, $readings>,
-                    _: &SVector<f64, $readings>,
-                ) -> DampingLocal<$vectors> {
+                    p: &SVector<f64, $arguments>,
+                    _: &SVector<f64, $arguments>,
+                ) -> $local<$vectors> {
                     self.local(p)
                 }
             }
@@ -399,7 +408,6 @@ macro_rules! contact {
     };
 }
 
-contact! {
-    1: 3, 9;
-    2: 6, 18;
-}
+pub(super) use virtual_work;
+
+virtual_work! { ContactDamping as DampingLocal: 1 of 9, 2 of 18 }

@@ -9,7 +9,7 @@
 //! - between spheres: u = ṙ − S × r/(R₁ + R₂), of which the part across r counts. Both forces act at the point that divides the span r as the
 //!   radii do, so that friction exerts no couple on a free pair.
 
-use crate::energy::contact::{curved, vector};
+use crate::energy::contact::{curved, vector, virtual_work};
 use crate::energy::{ContactLaw, Energy, Surface, Touch};
 use crate::math::{Derivatives, Jet, Local};
 use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
@@ -340,20 +340,6 @@ impl<const N: usize> FrictionLocal<N> {
     }
 }
 
-impl<const N: usize> Local for FrictionLocal<N> {
-    fn value(&self) -> f64 {
-        self.work.value
-    }
-
-    fn plain<const NV: usize>(&self) -> impl Derivatives {
-        *self
-    }
-
-    fn along<const NV: usize>(&self) -> impl Derivatives {
-        *self
-    }
-}
-
 impl<const N: usize> Derivatives for FrictionLocal<N> {
     fn force(&self, i: usize) -> Vector3<f64> {
         self.rows[i / N][i % N] * self.work.gradient
@@ -365,32 +351,4 @@ impl<const N: usize> Derivatives for FrictionLocal<N> {
     }
 }
 
-/// Implements the work for numbers of vectors.
-macro_rules! friction {
-    ($($vectors:literal: $arguments:literal,)*) => {
-        $(impl Energy<$arguments> for ContactFriction {
-            type Local<const ORDER: usize> = FrictionLocal<$vectors>;
-
-            const READINGS: usize = 3;
-            const VIRTUAL: usize = $vectors;
-
-            fn couples(i: usize, j: usize) -> bool {
-                i >= $vectors || j >= $vectors
-            }
-
-            fn at<const ORDER: usize>(
-                &self,
-                p: &SVector<f64, $arguments>,
-                _: &SVector<f64, $arguments>,
-            ) -> FrictionLocal<$vectors> {
-                self.local(p)
-            }
-        })*
-    };
-}
-
-friction! {
-    1: 9,
-    4: 36,
-    7: 63,
-}
+virtual_work! { ContactFriction as FrictionLocal: 1 of 9, 4 of 36, 7 of 63 }

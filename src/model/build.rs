@@ -9,6 +9,7 @@ use crate::model::analysis::{Analysis, Coordinates, ModelError};
 use crate::model::components::{Load, body, circuit, muscle};
 use crate::model::constants::free_parameters::Sought;
 use crate::model::construction::Construction;
+use crate::model::layout::contact_reading::ContactReading;
 use crate::model::layout::internal::Internals;
 use crate::model::layout::solids::Solids;
 use crate::model::layout::variables::{Role, Size, Time, Variable, Variables};
@@ -110,7 +111,7 @@ impl Model {
                 &analysis, &system, &presolved, &graph, &reference, &variables,
             ),
         };
-        let (intervals, made) = construction.sums(&mut vectors);
+        let (intervals, made, contacts) = construction.sums(&mut vectors);
         let measures = Measures::new(&construction, &intervals, &made.present, &mut vectors);
         let list = vectors.list();
         let (count, scalars) = (made.multipliers.len(), variables.of(Time::Interval).len());
@@ -140,7 +141,7 @@ impl Model {
             graph,
             reference,
             loops,
-            contacts: made.contacts,
+            contacts,
             present: made.present,
             left_out: made.left_out,
             system,
@@ -228,8 +229,11 @@ fn sought(
 }
 
 impl Construction<'_> {
-    /// Terms of an interval in the order of the plan, and of an instant with the reasons for all.
-    fn sums(&self, vectors: &mut Vectors) -> (Vec<Arc<dyn Term>>, Constraints) {
+    /// Terms of an interval in the order of the plan, of an instant with the reasons for all, and readings of contacts.
+    fn sums(
+        &self,
+        vectors: &mut Vectors,
+    ) -> (Vec<Arc<dyn Term>>, Constraints, Vec<ContactReading>) {
         let mut terms = self.no_terms(vectors);
         body::build(&self.presolved.system.bodies, self.reference, &mut terms);
         body::build_sought(&self.system.bodies, &mut terms);
@@ -246,14 +250,13 @@ impl Construction<'_> {
         let contacts = std::mem::take(&mut terms.contacts);
         let (terms, present, left_out) = terms.finish(rank);
         let mut constraints = Constraints {
-            contacts,
             present,
             left_out,
             ..Constraints::default()
         };
         self.add_constraints(&mut constraints, vectors);
         settle(&constraints.present, &mut constraints.left_out);
-        (terms, constraints)
+        (terms, constraints, contacts)
     }
 
     /// The map from coordinates to material vectors.

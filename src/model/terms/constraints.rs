@@ -6,7 +6,6 @@ use crate::functional::{Element, Group, Kernel, Stencil, Term};
 use crate::kinematics::{MaterialVector, Vectors};
 use crate::model::analysis::Coordinates;
 use crate::model::construction::Construction;
-use crate::model::layout::contact_reading::ContactReading;
 use crate::model::layout::internal::InternalKind;
 use crate::model::system::Glue;
 use crate::model::system::joints::JointCoordinate;
@@ -28,8 +27,6 @@ pub(crate) const GLUE: &str = "glue";
 pub(crate) struct Constraints {
     pub(crate) terms: Vec<Arc<dyn Term>>,
     pub(crate) multipliers: Vec<String>,
-    /// Readings of the contacts that act.
-    pub(crate) contacts: Vec<ContactReading>,
     pub(crate) present: Vec<Present>,
     pub(crate) left_out: Vec<LeftOut>,
 }
