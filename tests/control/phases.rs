@@ -93,6 +93,32 @@ fn two_phases_in_which_nothing_changes_are_one_motion() {
 }
 
 #[test]
+fn a_junction_in_motion_changes_nothing() {
+    let trunk = std::fs::read_to_string("problems/elephant_trunk_effort.json").unwrap();
+    let mut one: Value = serde_json::from_str(&trunk).unwrap();
+    one["control"]["solver"]["tolerance"] = json!(1e-12);
+    let mut two = one.clone();
+    one["control"]["motions"] = json!([{ "name": "whole" }]);
+    two["control"]["phases"] = json!([
+        { "name": "first", "duration": "0.36 s", "intervals": 24 },
+        { "name": "second", "duration": "0.24 s", "intervals": 16 },
+    ]);
+    let [one, two] = [one, two].map(|problem| solved(&problem));
+    let apart = (two.whole.objective / one.whole.objective - 1.0).abs();
+    assert!(apart < 1e-9, "{apart:e}");
+    let [whole, first, second] =
+        [&one.list[0], &two.list[0], &two.list[1]].map(|result| &result.optimum.motion.joints);
+    // It moves there, by rad in an interval.
+    let way = (whole[25][0] - whole[23][0]).abs();
+    assert!(way > 0.01, "{way}");
+    let phases = first.iter().chain(&second[1..]);
+    let pairs = whole.iter().zip(phases).flat_map(|(a, b)| a.iter().zip(b));
+    let most = pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    println!("objectives {apart:e} apart, joints {most:e} rad of {way}");
+    assert!(most < 1e-6, "{most:e}");
+}
+
+#[test]
 fn a_place_at_a_time_that_is_sought_is_that_of_the_closed_form() {
     // Rest to rest over 1 m in 1 s by way of 1.5 m at a free time, least ∫ a² dt.
     let (time, objective) = ((3.0 - 3.0_f64.sqrt()) / 2.0, 167.138_438_76);
