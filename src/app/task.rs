@@ -118,7 +118,7 @@ pub(super) fn refuse_replacing(
     each.try_for_each(|motion| {
         let place = match motion.name {
             "" => "control".to_owned(),
-            name => format!("control.motions.{name}"),
+            name => format!("control.{}.{name}", motion.control.list()),
         };
         let own = folder_within(&own, motion.name);
         refuse_end(request, &place, &motion.control.start, &own)

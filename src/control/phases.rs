@@ -1,6 +1,6 @@
 //! Phases: motions of one robot, one after another.
 
-use crate::control::problem::{BoundaryState, Combined, Duration, Motion, Motions};
+use crate::control::problem::{BoundaryState, Combined, Control, Motion, Motions};
 use crate::math::{Fault, Key, refuse, shortest};
 use crate::model::system::Joint;
 
@@ -16,8 +16,7 @@ impl Motions {
     /// What makes no phases: the place by the keys of a control problem.
     pub fn in_sequence(mut list: Vec<Motion>, whole: Option<f64>) -> Result<Self, Fault> {
         let count = list.len();
-        refuse!(if count < 2, Key(PHASES);
-            found format!("{count} phases"), expected "two phases or more");
+        refuse!(if count < 2, Key(PHASES); found "one phase", expected "a list of two phases or more");
         for (number, phase) in list.iter_mut().enumerate() {
             phase.control.continues = [number > 0, number + 1 < count];
             check(phase, &format!("{PHASES}[{number}]"))?;
@@ -30,6 +29,16 @@ impl Motions {
             shared_inputs: Vec::new(),
             combined: Combined::InSequence(whole),
         })
+    }
+}
+
+impl Control {
+    /// Key of the list of motions or phases in which it stands.
+    pub fn list(&self) -> &'static str {
+        match self.continues {
+            [false, false] => "motions",
+            _ => PHASES,
+        }
     }
 }
 
@@ -63,11 +72,12 @@ fn check(phase: &Motion, at: &str) -> Result<(), Fault> {
 
 /// Checks that phases can last a time together.
 fn check_sum(list: &[Motion], whole: f64) -> Result<(), Fault> {
-    let bounds = |phase: &Motion| match phase.control.duration {
-        Duration::Given(duration) => [duration; 2],
-        Duration::Free { min, max, .. } => [min, max],
-    };
-    let [least, most] = [0, 1].map(|end| list.iter().map(|one| bounds(one)[end]).sum::<f64>());
+    let [least, most] = [0.0, f64::INFINITY].map(|time| {
+        let each = list
+            .iter()
+            .map(|phase| phase.control.duration.nearest(time));
+        each.sum::<f64>()
+    });
     let seconds = |time: f64| format!("{} s", shortest(time / 1e3, 6));
     let expected = match least < most {
         true => format!(

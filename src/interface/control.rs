@@ -322,6 +322,9 @@ impl<'a> Together<'a> {
             Ok(sources[found.unwrap_or_default()].name.clone())
         };
         let shared_inputs = self.shared.iter().map(name).collect::<Result<_>>()?;
+        let is_in_sequence = matches!(self.combined, Combined::InSequence(_));
+        refuse!(if is_in_sequence && !self.shared.is_empty(), Entry("shared inputs");
+            found "inputs in common", expected "none of phases, which follow one another");
         let motions = match self.combined {
             Combined::InSequence(whole) => Motions::in_sequence(list, whole).map_err(|fault| {
                 let reason = format!("found {}, expected {}", fault.finding(), fault.expected);
@@ -408,7 +411,7 @@ fn check_waypoints(waypoints: &[Waypoint], is_open: bool, system: &System) -> Re
     Ok(())
 }
 
-/// Returns true if a part of the duration lies on the way: the end of a periodic motion does.
+/// Returns true if a part of the duration lies on the way: the end of a motion does that is periodic or has no goal.
 fn is_on_the_way(part: f64, is_open: bool) -> bool {
     part > 0.0 && (part < 1.0 || (is_open && part == 1.0))
 }

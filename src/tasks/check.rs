@@ -121,9 +121,9 @@ fn all_motions(motions: Motions, seconds: Option<f64>) -> Result<CheckResult, Wo
         control,
     } in motions.list
     {
-        let left = budget.left();
+        let (left, list) = (budget.left(), control.list());
         let found = check(&system, Task::Control(Box::new(control)), left);
-        let mut found = found.map_err(|error| error.of_motion(&name))?;
+        let mut found = found.map_err(|error| error.of_motion(list, &name))?;
         found.message = format!("motion \"{name}\": {}", found.message);
         all = Some(match all {
             None => found,

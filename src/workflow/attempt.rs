@@ -133,7 +133,7 @@ pub(crate) fn attempt(
             setup,
             carried,
             cut_short,
-            ..optimum.map_err(|error| error.of_motion(one.name))?
+            ..optimum.map_err(|error| error.of_motion(one.control.list(), one.name))?
         });
     }
     // A part of an objective may vanish: the gap of the whole counts.

@@ -105,9 +105,9 @@ impl WorkflowError {
     }
 
     /// The same of one of several motions: its place in the problem, where it has one, is that of the motion.
-    pub(crate) fn of_motion(self, name: &str) -> Self {
+    pub(crate) fn of_motion(self, list: &str, name: &str) -> Self {
         let within = |place: String| match place.strip_prefix("control.") {
-            Some(rest) if !name.is_empty() => format!("control.motions.{name}.{rest}"),
+            Some(rest) if !name.is_empty() => format!("control.{list}.{name}.{rest}"),
             _ => place,
         };
         let mut of_motion = self;

@@ -10,7 +10,7 @@
 //! was at rest, and what is left behind goes on as it moved. Durations that are sought are unknowns of each phase; their sum may be given.
 
 use crate::control::Transcription;
-use crate::control::problem::{Combined, ControlTask, Duration};
+use crate::control::problem::ControlTask;
 use crate::model::{Model, Role};
 use crate::nlp::joined::{Joined, SharedRow, SharedVariable};
 use crate::workflow::error::WorkflowError;
@@ -19,7 +19,7 @@ use crate::workflow::error::WorkflowError;
 ///
 /// # Errors
 /// The coordinates of both are not the same, or a joint turns about a point, or closes a loop.
-pub(super) fn check(pair: [&Model; 2], names: [&str; 2]) -> Result<(), WorkflowError> {
+fn check(pair: [&Model; 2], names: [&str; 2]) -> Result<(), WorkflowError> {
     let names_of = |model: &Model| -> Vec<String> {
         let all = model.variables.with(Role::Coordinate).iter();
         all.map(|variable| variable.name.clone()).collect()
@@ -43,80 +43,68 @@ pub(super) fn check(pair: [&Model; 2], names: [&str; 2]) -> Result<(), WorkflowE
     Err(WorkflowError::problem("control.phases", reason))
 }
 
-/// The coordinates of the junction of the phases `first` and `first + 1` among a number of programs, and their balances.
+/// The coordinates of all junctions of phases, by their names, and the balances there; phases are the first ones of a number of programs.
+///
+/// # Errors
+/// As of [`check`].
 pub(super) fn shared(
-    pair: [&Transcription<'_>; 2],
-    first: usize,
+    names: &[&str],
+    phases: &[&Transcription<'_>],
     programs: usize,
-) -> (Vec<SharedVariable>, Vec<SharedRow>) {
-    let [a, b] = pair;
-    let end = a.intervals();
+) -> Result<(Vec<SharedVariable>, Vec<SharedRow>), WorkflowError> {
     let (mut variables, mut rows) = (Vec::new(), Vec::new());
-    for i in a.model().variables.range(Role::Coordinate) {
-        if let (Some(one), Some(other)) = (a.unknowns().unknown(end, i), b.unknowns().unknown(0, i))
-        {
-            let mut places = vec![None; programs];
-            places[first] = Some((one, 1.0));
-            places[first + 1] = Some((other, a.column_scale(one) / b.column_scale(other)));
-            variables.push(SharedVariable(places));
-        }
-        if let (Some(one), Some(other)) = (a.unknowns().row(end, i), b.unknowns().row(0, i)) {
-            let factor = a.row_scale(one) / b.row_scale(other);
-            rows.push(SharedRow(vec![
-                (first, one, 1.0),
-                (first + 1, other, factor),
-            ]));
+    for (first, pair) in phases.windows(2).enumerate() {
+        let [a, b] = [pair[0], pair[1]];
+        check(
+            [a, b].map(Transcription::model),
+            [names[first], names[first + 1]],
+        )?;
+        let columns = |i: usize| {
+            let own = a.unknowns().unknown(a.intervals(), i);
+            own.zip(b.unknowns().unknown(0, i))
+        };
+        let balances = |i: usize| {
+            let own = a.unknowns().row(a.intervals(), i);
+            own.zip(b.unknowns().row(0, i))
+        };
+        for i in a.model().variables.range(Role::Coordinate) {
+            variables.extend(columns(i).map(|(one, other)| {
+                let mut places = vec![None; programs];
+                places[first] = Some((one, 1.0));
+                places[first + 1] = Some((other, a.column_scale(one) / b.column_scale(other)));
+                SharedVariable(places)
+            }));
+            rows.extend(balances(i).map(|(one, other)| {
+                let factor = a.row_scale(one) / b.row_scale(other);
+                SharedRow(vec![(first, one, 1.0), (first + 1, other, factor)])
+            }));
         }
     }
-    (variables, rows)
+    Ok((variables, rows))
 }
 
-/// The sum of the durations of phases, where it is given and some are sought.
-pub(super) struct Durations {
-    /// For each phase whose duration is sought the column of its interval length and the duration of a length of one there.
-    sought: Vec<(usize, usize, f64)>,
-    /// Their sum in ms.
-    left: f64,
-}
-
-impl Durations {
-    pub(super) fn new<'p, 'm: 'p>(
-        phases: impl Iterator<Item = &'p Transcription<'m>>,
-        task: &ControlTask<'_>,
-    ) -> Self {
-        let length = |(number, program): (usize, &Transcription<'_>)| {
-            let column = program.unknowns().horizon()?;
-            let length = program.intervals() as f64 * program.column_scale(column);
-            Some((number, column, length))
-        };
-        let given = task
-            .motions
-            .iter()
-            .map(|phase| match phase.control.duration {
-                Duration::Given(duration) => duration,
-                Duration::Free { .. } => 0.0,
-            });
-        let whole = match task.combined {
-            Combined::InSequence(whole) => whole,
-            Combined::Sum | Combined::Worst => None,
-        };
-        let sought = phases.enumerate().filter_map(length);
-        Self {
-            sought: sought.filter(|_| whole.is_some()).collect(),
-            left: whole.unwrap_or_default() - given.sum::<f64>(),
+/// The program of phases with the sum of their durations in ms as a row, where some are sought.
+pub(super) fn lasting<'m>(
+    program: Joined<Transcription<'m>>,
+    task: &ControlTask<'_>,
+    whole: f64,
+) -> Joined<Transcription<'m>> {
+    let (mut terms, mut left) = (Vec::new(), whole);
+    for (number, (part, phase)) in program.parts().zip(&task.motions).enumerate() {
+        match part.unknowns().horizon() {
+            Some(own) => {
+                let (column, factor) = program.places().variable_of(number, own);
+                let length = part.intervals() as f64 * part.column_scale(own);
+                terms.push((column, factor * length));
+            }
+            None => left -= phase.control.duration.first(),
         }
     }
-
-    /// The program of the phases with the sum as a row.
-    pub(super) fn of<'m>(&self, program: Joined<Transcription<'m>>) -> Joined<Transcription<'m>> {
-        if self.sought.is_empty() {
-            return program;
-        }
-        let term = |&(number, own, length): &(usize, usize, f64)| {
-            let (column, factor) = program.places().variable_of(number, own);
-            (column, factor * length / self.left)
-        };
-        let terms = self.sought.iter().map(term).collect();
-        program.with_sum("the sum of the durations", terms, 1.0)
+    if terms.is_empty() {
+        return program;
     }
+    let terms = terms
+        .into_iter()
+        .map(|(column, length)| (column, length / left));
+    program.with_sum("the sum of the durations", terms.collect(), 1.0)
 }

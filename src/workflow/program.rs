@@ -31,7 +31,8 @@ pub(crate) fn resolve_each(
 ) -> Result<Vec<(Arc<Model>, BoundaryConditions)>, WorkflowError> {
     let each = task.motions.iter().map(|one| {
         let resolved = resolve(one.system, one.control);
-        let (model, boundary) = resolved.map_err(|error| error.of_motion(one.name))?;
+        let (model, boundary) =
+            resolved.map_err(|error| error.of_motion(one.control.list(), one.name))?;
         Ok((Arc::new(model), boundary))
     });
     each.collect()
@@ -74,7 +75,7 @@ pub(crate) fn prepare_together<'m>(
             earlier,
             Counted::Yes,
         );
-        let one = one.map_err(|error| error.of_motion(name))?;
+        let one = one.map_err(|error| error.of_motion(control.list(), name))?;
         parts.push((one.program, one.point));
         starts.push(one.start);
         carried.push(one.carried);
@@ -229,16 +230,12 @@ pub(super) fn joined<'m>(
     let mut shared = shared_variables(&parts, &rest, task.shared_inputs)?;
     let mut rows = Vec::new();
     if let Combined::InSequence(_) = task.combined {
-        for first in 0..parts.len() - 1 {
-            let pair = [&parts[first].0, &parts[first + 1].0];
-            let names = [motions[first].task.name, motions[first + 1].task.name];
-            junction::check(pair.map(Transcription::model), names)?;
-            let (variables, balances) = junction::shared(pair, first, parts.len() + rest.len());
-            shared.extend(variables);
-            rows.extend(balances);
-        }
+        let phases: Vec<_> = parts.iter().map(|(program, _)| program).collect();
+        let names: Vec<_> = motions.iter().map(|motion| motion.task.name).collect();
+        let (variables, balances) = junction::shared(&names, &phases, parts.len() + rest.len())?;
+        shared.extend(variables);
+        rows = balances;
     }
-    let durations = junction::Durations::new(parts.iter().map(|(program, _)| program), task);
     let (mut programs, mut points) = (Vec::new(), Vec::new());
     for (motion, (program, point)) in motions.iter().zip(parts) {
         programs.push((motion.task.name.to_owned(), program));
@@ -253,9 +250,9 @@ pub(super) fn joined<'m>(
     }
     let program = Joined::with_rows(programs, &shared, &rows).with_objectives_of(motions.len());
     let mut program = match task.combined {
-        Combined::Sum => program,
+        Combined::Sum | Combined::InSequence(None) => program,
         Combined::Worst => program.with_worst(),
-        Combined::InSequence(_) => durations.of(program),
+        Combined::InSequence(Some(whole)) => junction::lasting(program, task, whole),
     };
     let mut point = joined_point(program.places(), &points);
     let StartingPoint { x, costates } = &mut point;

@@ -338,6 +338,21 @@ fn each_motion_is_inspected_and_the_program_of_all() {
 }
 
 #[test]
+fn phases_have_starts() {
+    let folder = workshop();
+    let path = folder.path();
+    let cart = "problems/passing_cart.json";
+    let (status, out, err) = run(path, &["solve", cart, "--starts", "2", "-o", "out"]);
+    assert_eq!(status, 0, "{out}{err}");
+    assert!(
+        out.contains("2 of 2 starts solved, 1 distinct optimum"),
+        "{out}"
+    );
+    let summary = read(path.join("out/summary.json"));
+    assert_eq!(summary["motions"][0]["name"], "there");
+}
+
+#[test]
 fn several_motions_have_starts_and_the_best_of_all_is_kept() {
     let folder = workshop();
     let path = folder.path();

@@ -119,7 +119,7 @@ fn check_problem(request: &CommandInput, loaded: &Loaded) -> Result<Vec<String>,
     keep_unanswered(request, ends)?;
     let place = |(number, motion): (usize, &MotionTask<'_>)| match motion.is_alone() {
         true => "control.guess".to_owned(),
-        false => format!("control.motions[{number}].guess"),
+        false => format!("control.{}[{number}].guess", motion.control.list()),
     };
     Ok(task.motions.iter().enumerate().map(place).collect())
 }

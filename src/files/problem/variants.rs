@@ -42,8 +42,8 @@ const OWN: [&str; 2] = ["name", "set"];
 const OF_ALL: [&str; 4] = ["combine", "motions", "phases", "shared_inputs"];
 /// Key of motions one after another.
 const PHASES: &str = "phases";
-/// Keys of a control problem with phases that are those of the whole.
-const OF_WHOLE: [&str; 3] = ["duration", "goal", "start"];
+/// Keys of a control problem with phases that no phase has.
+const ENDS: [&str; 2] = ["goal", "start"];
 
 /// A motion as a problem of its own.
 pub(crate) struct MotionDocument<'a> {
@@ -79,16 +79,13 @@ pub(crate) fn motions(document: &Document) -> Result<Option<Vec<MotionDocument<'
         found format!("the key {other:?}"), expected format!("none beside {key:?}"));
     let scope = scope.key(key);
     refuse!(if list.first() != Some('['), scope; found list, expected "a list of motions");
-    refuse!(if key == PHASES && list.parts().len() == 1, scope;
-        found "one phase", expected "a list of two phases or more");
     refuse!(if list.parts().len() == 0, scope;
         found "no motion", expected "a list of one motion or more");
     let mut names = BTreeSet::new();
-    let last = list.parts().len() - usize::from(key == PHASES);
+    let count = list.parts().len();
     let each = list.parts().enumerate().map(|(number, written)| {
-        let is_phase = key == PHASES;
-        let mut motion = one(written, number, control, is_phase, &scope.index(number))?;
-        if is_phase && number < last {
+        let mut motion = one(written, number, control, key, &scope.index(number))?;
+        if key == PHASES && number + 1 < count {
             let goal = JsonPath::default().key("control").key("goal");
             Override::new(goal, "free".into()).apply(&mut motion.document)?;
         }
@@ -105,7 +102,7 @@ fn one<'a>(
     motion: Json<'_>,
     number: usize,
     control: Json<'_>,
-    is_phase: bool,
+    list: &str,
     scope: &Scope<'a>,
 ) -> Result<MotionDocument<'a>> {
     refuse!(if motion.first() != Some('{'), scope;
@@ -115,9 +112,10 @@ fn one<'a>(
     let mut common = motion.parts().filter(|entry| is_of(&COMMON, entry));
     refuse!(if let Some(key) = common.find_map(Json::key), scope.key(&key);
         found format!("the key {key:?} in a motion"),
-        expected "it beside \"motions\": all of them have it in common");
-    let ends = OF_WHOLE[1..].iter().filter(|_| is_phase);
-    refuse!(if let Some(key) = ends.copied().find(|key| motion.entry(key).is_some()), scope.key(key);
+        expected format!("it beside {list:?}: all of them have it in common"));
+    let is_phase = list == PHASES;
+    let mut ends = ENDS.into_iter().filter(|_| is_phase);
+    refuse!(if let Some(key) = ends.find(|key| motion.entry(key).is_some()), scope.key(key);
         found format!("the key {key:?} in a phase"),
         expected "it beside \"phases\": the first phase has the start and the last one the goal; \"waypoints\" at \"part\": 1 are places between two phases");
     refuse!(if is_phase && motion.entry("duration").is_none(), scope;

@@ -305,10 +305,10 @@ impl<N: Nlp + Send> Nlp for Joined<N> {
     fn jacobian(&mut self, x: &[f64], values: &mut [f64]) {
         let own = self.parts.iter().map(|part| part.entries[0]).sum();
         let (values, further) = values.split_at_mut(own);
-        let terms = self.sum.iter().flat_map(|sum| &sum.terms);
-        let (of_sum, of_worst) = further.split_at_mut(terms.clone().count());
-        for (value, (_, coefficient)) in of_sum.iter_mut().zip(terms) {
-            *value = *coefficient;
+        let terms = self.sum.as_ref().map_or(&[][..], |sum| &sum.terms);
+        let (of_sum, of_worst) = further.split_at_mut(terms.len());
+        for (value, &(_, coefficient)) in of_sum.iter_mut().zip(terms) {
+            *value = coefficient;
         }
         each(&mut self.parts, values, &|p| p.entries[0], &|part, own| {
             part.read(x);

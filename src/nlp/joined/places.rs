@@ -34,13 +34,16 @@ impl SharedVariable {
 #[derive(Clone, Debug, PartialEq)]
 pub struct SharedRow(pub Vec<(usize, usize, f64)>);
 
+/// The variables or rows of a program in the whole: the place of each, and a factor.
+pub(super) type Shares = Arc<[(usize, f64)]>;
+
 /// Places of the variables and constraints of each program.
 #[derive(Clone, Debug)]
 pub struct Places {
     /// For each variable of a program the variable of the whole, and the factor by which its value in the program is larger.
-    pub(super) columns: Vec<Arc<[(usize, f64)]>>,
+    pub(super) columns: Vec<Shares>,
     /// For each row of a program the row of the whole to which it is added, and its factor there.
-    pub(super) rows: Vec<Arc<[(usize, f64)]>>,
+    pub(super) rows: Vec<Shares>,
     /// Number of rows of all programs.
     pub(super) row_count: usize,
     /// Number of variables, and the first one that is shared.
@@ -67,13 +70,13 @@ impl Places {
         let mut next = 0;
         let mut out = Self {
             columns: Vec::with_capacity(sizes.len()),
-            rows: Vec::with_capacity(sizes.len()),
+            rows: Vec::new(),
             row_count: 0,
             count: variables + shared.len(),
             first_shared: variables,
             shared: shared.iter().map(owner).collect(),
         };
-        for (number, &[n, m]) in sizes.iter().enumerate() {
+        for (number, &[n, _]) in sizes.iter().enumerate() {
             let mut columns = vec![None; n];
             for (place, one) in shared.iter().enumerate() {
                 if let Some((own, factor)) = one.0[number] {
@@ -88,28 +91,8 @@ impl Places {
                 .into_iter()
                 .map(|shared| shared.unwrap_or_else(&mut own));
             out.columns.push(columns.collect());
-            let mut rows = vec![(usize::MAX, 1.0); m];
-            for one in shared_rows {
-                for (place, &(of, row, factor)) in one.0.iter().enumerate() {
-                    // It stands where the first program has it.
-                    let to = match place {
-                        0 => usize::MAX,
-                        _ => out
-                            .rows
-                            .get(one.0[0].0)
-                            .map_or(0, |first| first[one.0[0].1].0),
-                    };
-                    if of == number {
-                        rows[row] = (to, factor);
-                    }
-                }
-            }
-            for (to, _) in rows.iter_mut().filter(|(to, _)| *to == usize::MAX) {
-                *to = out.row_count;
-                out.row_count += 1;
-            }
-            out.rows.push(rows.into());
         }
+        (out.rows, out.row_count) = rows(sizes, shared_rows);
         out
     }
 
@@ -197,6 +180,34 @@ impl Places {
     }
 }
 
+/// The row of the whole to which each row of each program is added, with its factor, and the number of these. A shared row stands where the first
+/// program has it.
+fn rows(sizes: &[[usize; 2]], shared: &[SharedRow]) -> (Vec<Shares>, usize) {
+    let mut all: Vec<Vec<(usize, f64)>> = Vec::new();
+    let mut is_further: Vec<Vec<bool>> = Vec::new();
+    for &[_, m] in sizes {
+        all.push(vec![(0, 1.0); m]);
+        is_further.push(vec![false; m]);
+    }
+    for &(program, row, _) in shared.iter().flat_map(|one| &one.0[1..]) {
+        is_further[program][row] = true;
+    }
+    let mut count = 0;
+    let each = all.iter_mut().flatten().zip(is_further.iter().flatten());
+    for ((to, _), _) in each.filter(|(_, is_further)| !**is_further) {
+        *to = count;
+        count += 1;
+    }
+    for one in shared {
+        let (first, row, _) = one.0[0];
+        let (place, _) = all[first][row];
+        for &(program, row, factor) in &one.0 {
+            all[program][row] = (place, factor);
+        }
+    }
+    (all.into_iter().map(Into::into).collect(), count)
+}
+
 /// Part of the greatest objective by which the first bound lies above it.
 const ABOVE: f64 = 0.1;
 
@@ -276,9 +287,9 @@ pub(super) struct Part<N> {
     pub(super) program: N,
     pub(super) name: String,
     /// Variable of the whole that each of its variables is, and the factor by which its value is larger.
-    pub(super) columns: Arc<[(usize, f64)]>,
+    pub(super) columns: Shares,
     /// Row of the whole to which each of its rows is added, and its factor there.
-    pub(super) rows: Arc<[(usize, f64)]>,
+    pub(super) rows: Shares,
     /// Numbers of entries of Jacobian and Hessian.
     pub(super) entries: [usize; 2],
     /// Entries of Jacobian and Hessian whose value is larger in the whole, and the factors.
