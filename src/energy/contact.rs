@@ -13,8 +13,9 @@
 //! q, and q = ½ |r|² for a sphere, at the height √(2 q).
 
 use crate::energy::Energy;
+use crate::energy::dot_products::OfDotProducts;
 use crate::math::{Derivatives, Jet, Local};
-use nalgebra::{Matrix3, SMatrix, SVector, Vector3};
+use nalgebra::{Matrix3, SVector, Vector3};
 
 /// Ramp s at x with its three derivatives; without a width it has a corner at zero.
 pub(super) fn ramp(x: f64, w: f64) -> [f64; 4] {
@@ -279,71 +280,25 @@ impl Derivatives for FormRates {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactDamping(pub ContactLaw);
 
-/// Virtual work as a function of the form q of a contact, its rate α and its variation β.
-#[derive(Clone, Copy, Debug)]
-pub struct DampingLocal<const N: usize> {
-    surface: Surface,
-    work: Jet<3, 2>,
-    /// Derivatives of q, α and β by each argument.
-    rows: [[Matrix3<f64>; N]; 3],
-}
-
 impl ContactDamping {
-    fn local<const N: usize, const M: usize>(&self, p: &SVector<f64, M>) -> DampingLocal<N> {
-        let surface = self.0.surface;
-        let read = |reading: usize| {
-            [0, 1].map(|v| match v < N {
-                true => vector(p, reading * N + v),
-                false => Vector3::zeros(),
-            })
+    /// The work of `K` − 1 arguments, with the normal of a plane that does not turn behind them.
+    fn local<const K: usize, const M: usize>(&self, p: &SVector<f64, M>) -> OfDotProducts<K> {
+        let law = &self.0;
+        let mut vectors = std::array::from_fn(|i| vector(p, i));
+        let [virtual_rate, form, rate]: [&[[usize; 2]]; 3] = match law.surface {
+            Surface::Plane(normal) => {
+                vectors[K - 1] = normal;
+                [&[[0, 3]], &[[1, 3]], &[[2, 3]]]
+            }
+            Surface::Sphere => [&[[0, 1]], &[[1, 1]], &[[2, 1]]],
+            Surface::MovingPlane => [&[[0, 3], [1, 2]], &[[2, 3]], &[[4, 3], [5, 2]]],
         };
-        let [variation, at, rate] = [0, 1, 2].map(read);
-        let gradient = surface.gradient(at);
-        let [varied, moved] = [variation, rate].map(|rates| surface.bend(rates));
-        let along =
-            |rates: [Vector3<f64>; 2]| gradient[0].dot(&rates[0]) + gradient[1].dot(&rates[1]);
-        let y = Vector3::new(surface.form(at), along(rate), along(variation));
-        let [q, alpha, beta] = [0, 1, 2].map(|i| Jet::argument(i, &y, &Vector3::zeros()));
-        let [slope, force, growth] = self.0.force(&q, &alpha);
-        let none = Vector3::zeros();
-        let columns =
-            |[q, alpha, beta]: [Vector3<f64>; 3]| Matrix3::from_columns(&[q, alpha, beta]);
-        DampingLocal {
-            surface,
-            work: force * growth.shifted(-1.0) * slope * beta,
-            rows: [
-                std::array::from_fn(|v| columns([none, none, gradient[v]])),
-                std::array::from_fn(|v| columns([gradient[v], moved[v], varied[v]])),
-                std::array::from_fn(|v| columns([none, gradient[v], none])),
-            ],
-        }
-    }
-}
-
-impl<const N: usize> Derivatives for DampingLocal<N> {
-    fn force(&self, i: usize) -> Vector3<f64> {
-        self.rows[i / N][i % N] * self.work.gradient
-    }
-
-    fn block(&self, i: usize, j: usize) -> Matrix3<f64> {
-        let [row, column] = [i, j].map(|i| self.rows[i / N][i % N]);
-        let curved = curved(i / N, j / N, &self.work.gradient);
-        Matrix3::from_diagonal_element(curved * self.surface.curvature(i % N, j % N))
-            + row * self.work.hessian * column.transpose()
-    }
-}
-
-/// Derivative by q, its rate or its variation, the last three of a gradient, of which the second derivatives by arguments of two readings are not
-/// zero.
-pub(super) fn curved<const Y: usize>(a: usize, b: usize, gradient: &SMatrix<f64, Y, 1>) -> f64 {
-    match a + b {
-        // Variation and midpoint.
-        1 => gradient[Y - 1],
-        // Twice the midpoint, or variation and rate.
-        2 if a == b => gradient[Y - 3],
-        // Midpoint and rate.
-        3 => gradient[Y - 2],
-        _ => 0.0,
+        let mut work = OfDotProducts::new(vectors);
+        work.add([virtual_rate], [form, rate], |[q, alpha]| {
+            let [slope, force, growth] = law.force(&q, &alpha);
+            [force * growth.shifted(-1.0) * slope]
+        });
+        work
     }
 }
 
@@ -370,28 +325,15 @@ elasticity! { 3 6 }
 
 /// Implements a virtual work for numbers of vectors, each of which is read three times: its variation, midpoint and rate.
 macro_rules! virtual_work {
-    ($formula:ident as $local:ident: $($vectors:literal of $arguments:literal),*) => {
-        impl<const N: usize> Local for $local<N> {
-            fn value(&self) -> f64 {
-                self.work.value
-            }
-
-            fn plain<const NV: usize>(&self) -> impl Derivatives {
-                *self
-            }
-
-            fn along<const NV: usize>(&self) -> impl Derivatives {
-                *self
-            }
-        }
-
+    ($($formula:ty, $vectors:literal of $arguments:literal as $local:ty;)*) => {
         $(
             impl Energy<$arguments> for $formula {
-                type Local<const ORDER: usize> = $local<$vectors>;
+                type Local<const ORDER: usize> = $local;
 
-                const READINGS: usize = 3;
                 const VIRTUAL: usize = $vectors;
+                const READINGS: usize = 3;
 
+                /// It is linear in variations.
                 fn couples(i: usize, j: usize) -> bool {
                     i >= $vectors || j >= $vectors
                 }
@@ -400,7 +342,7 @@ macro_rules! virtual_work {
                     &self,
                     p: &SVector<f64, $arguments>,
                     _: &SVector<f64, $arguments>,
-                ) -> $local<$vectors> {
+                ) -> $local {
                     self.local(p)
                 }
             }
@@ -410,4 +352,7 @@ macro_rules! virtual_work {
 
 pub(super) use virtual_work;
 
-virtual_work! { ContactDamping as DampingLocal: 1 of 9, 2 of 18 }
+virtual_work! {
+    ContactDamping, 1 of 9 as OfDotProducts<4>;
+    ContactDamping, 2 of 18 as OfDotProducts<7>;
+}

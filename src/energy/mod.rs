@@ -5,6 +5,7 @@ mod charge;
 mod coefficient;
 mod constraint;
 mod contact;
+mod dot_products;
 mod elastic_law;
 mod friction;
 mod kinetic;
@@ -24,9 +25,8 @@ pub use charge::{
 };
 pub use coefficient::Coefficient;
 pub use constraint::{Coincidence, Orthogonality};
-pub use contact::{
-    ContactDamping, ContactElasticity, ContactLaw, DampingLocal, OfForm, Surface, Touch,
-};
+pub use contact::{ContactDamping, ContactElasticity, ContactLaw, OfForm, Surface, Touch};
+pub use dot_products::OfDotProducts;
 pub use elastic_law::{ElasticConstants, ElasticLaw, Elasticity, NeoHooke};
 pub use friction::{ContactFriction, FrictionLocal};
 pub use kinetic::{

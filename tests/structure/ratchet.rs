@@ -11,7 +11,7 @@ const SIZES: [(&str, usize, usize); 26] = [
     ("coordinates", 3150, 17),
     ("dynamics", 11050, 36),
     ("element", 3400, 15),
-    ("energy", 3050, 17),
+    ("energy", 3150, 18),
     ("feedback", 850, 4),
     ("files", 16550, 80),
     ("functional", 5350, 20),

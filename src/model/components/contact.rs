@@ -221,19 +221,15 @@ impl Contact {
         coefficient: f64,
         terms: &mut Terms<'_>,
     ) -> (ContactFriction, Vec<usize>) {
-        let law = reading.law;
-        let (mut vectors, mut tangents) = (vec![reading.span], [Vector3::zeros(); 2]);
-        let mut spheres = vec![self.sphere];
-        match &self.side {
-            ContactSide::Sphere(other) => spheres.push(*other),
-            ContactSide::Plane { at, normal } => {
-                tangents = triad(normal);
-                if let Some(normal) = reading.normal {
-                    let turning = tangents.map(|tangent| terms.direction(at, &tangent));
-                    vectors.extend(turning.map(|tangent| terms.vector(tangent)));
-                    vectors.push(normal);
-                }
+        let (mut vectors, mut spheres) = (vec![reading.span], vec![self.sphere]);
+        match (&self.side, reading.normal) {
+            (ContactSide::Sphere(other), _) => spheres.push(*other),
+            (ContactSide::Plane { at, normal }, Some(turning)) => {
+                let tangents = triad(normal).map(|tangent| terms.direction(at, &tangent));
+                vectors.extend(tangents.map(|tangent| terms.vector(tangent)));
+                vectors.push(turning);
             }
+            (ContactSide::Plane { .. }, None) => {}
         }
         let mut radii = [0.0; 2];
         spheres.retain(|one| one.radius > 0.0 && terms.carrier(&one.centre).is_some());
@@ -244,10 +240,8 @@ impl Contact {
             vectors.extend(directors.map(|director| terms.vector(director)));
         }
         let friction = ContactFriction {
-            law,
-            tangents,
+            law: reading.law,
             radii,
-            size: law.distance,
             coefficient,
             slip_speed: self.slip_speed,
         };
