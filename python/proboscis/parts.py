@@ -397,8 +397,10 @@ class Contact(Part):
     * `other`: The other sphere that it touches; or give `plane`.
     * `plane`: The plane that it touches; or give `other`.
     * `restitution`: Restitution, from which the damping follows; without it the contact does not damp.
-    * `slip_speed`: Speed of slip up to which friction grows, SI unit m/s; 0.1 mm/s where not written. What sticks creeps at a part of it.
+    * `slip_speed`: Speed of slip up to which friction grows, SI unit m/s; 0.1 mm/s where not written. What sticks creeps at a part of it, unless
+      `stick` is written.
     * `smoothing`: Width of the overlap around zero over which the stiffness grows, SI unit m, for optimal control; it jumps where not written.
+    * `stick`: Greatest elastic displacement before the contact slips, SI unit m; with it friction holds without creep.
     * `stiffness`: Force for an overlap of the undeformed shapes, SI unit N/m; or give `hertz`.
     """
 
@@ -416,6 +418,7 @@ class Contact(Part):
         restitution: entries.Restitution | None = None,
         slip_speed: Quantity | None = None,
         smoothing: Quantity | None = None,
+        stick: Quantity | None = None,
         stiffness: Quantity | None = None,
     ) -> None:
         super().__init__(
@@ -429,6 +432,7 @@ class Contact(Part):
                 "restitution": restitution,
                 "slip_speed": slip_speed,
                 "smoothing": smoothing,
+                "stick": stick,
                 "stiffness": stiffness,
             },
         )

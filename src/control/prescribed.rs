@@ -333,7 +333,7 @@ pub(super) fn check_periodic(model: &Model, control: &Control) -> Result<(), Bou
     // What is read in the middle of intervals alone may alternate from instant to instant in a ring of an even number of them.
     if model.memory().next().is_some() {
         return refused(
-            "periodic motions are those of muscles and blocks that do not creep and have no circuit",
+            "periodic motions are those of muscles and blocks that do not creep and have no circuit, and of contacts that do not stick",
         );
     }
     for (source, named) in model.sources.iter().enumerate() {

@@ -11,7 +11,7 @@
 //! - between spheres ρ = ν = r and v = ṙ + r × S/(R₁ + R₂). Both forces act at the point that divides the span r as the radii do, so that
 //!   friction exerts no couple on a free pair.
 
-use crate::energy::contact::{vector, virtual_work};
+use crate::energy::contact::{ramp, vector, virtual_work};
 use crate::energy::dot_products::{OfDotProducts, Product};
 use crate::energy::{ContactLaw, Energy, Surface, Touch};
 use crate::math::{Derivatives, Jet, Local};
@@ -31,12 +31,14 @@ pub struct ContactFriction {
     pub slip_speed: f64,
 }
 
-// Vectors of which the work is a function: virtual velocity, place, velocity, by reading, then the normal.
+// Vectors of which the work is a function: virtual velocity, place and velocity, by reading, in the same way those of z where it has one, and
+// the normal behind all.
 const VIRTUAL: usize = 0;
 const PLACE: usize = 1;
 const VELOCITY: usize = 2;
-const NORMAL: usize = 3;
-const VECTORS: usize = 4;
+const BRISTLE: usize = 3;
+
+const IDENTITY: [Matrix3<f64>; 1] = [Matrix3::new(1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0)];
 
 impl ContactFriction {
     /// Place among t₁, t₂, n of a vector of a plane of a body.
@@ -177,63 +179,101 @@ impl ContactFriction {
         turned([v, w]).unwrap_or_default() + turned([w, v]).unwrap_or_default().transpose()
     }
 
-    /// Sizes of friction in N and slip in mm/ms at vectors and rates.
-    pub fn of_rates(&self, x: &[Vector3<f64>], rates: &[Vector3<f64>]) -> [f64; 2] {
-        let (velocity, normal) = (self.velocity(x, rates), self.normal(x));
-        let across = velocity - normal * (normal.dot(&velocity) / normal.norm_squared());
+    /// Sizes of friction in N and slip in mm/ms at vectors and rates, and at the vector z of friction that sticks.
+    pub fn of_rates(
+        &self,
+        x: &[Vector3<f64>],
+        rates: &[Vector3<f64>],
+        bristle: Option<Vector3<f64>>,
+    ) -> [f64; 2] {
+        let normal = self.normal(x);
+        let across =
+            |v: Vector3<f64>| (v - normal * (normal.dot(&v) / normal.norm_squared())).norm();
         let ends = [x, rates].map(|of| [of[0], of[of.len().min(4) - 1]]);
         let Touch { force, .. } = self.law.touch(ends);
-        let speed = across.norm();
-        [
-            self.coefficient * force * speed / speed.hypot(self.slip_speed),
-            speed,
-        ]
+        let speed = across(self.velocity(x, rates));
+        let part = bristle.map_or(speed / speed.hypot(self.slip_speed), across);
+        [self.coefficient * force * part, speed]
+    }
+
+    /// The normal among the vectors of the work: that between spheres is the span.
+    fn normal_of<const K: usize>(&self) -> usize {
+        match self.law.surface {
+            Surface::Sphere => PLACE,
+            Surface::Plane(_) | Surface::MovingPlane => K - 1,
+        }
+    }
+
+    /// −μ f φ at the form q of the contact and its rate.
+    fn limit<const D: usize>(&self, q: &Jet<D, 2>, rate: &Jet<D, 2>) -> Jet<D, 2> {
+        let [_, force, growth] = self.law.force(q, rate);
+        match force.value == 0.0 {
+            true => Jet::constant(0.0),
+            false => (force * growth).scaled(-self.coefficient),
+        }
+    }
+
+    /// A product with the normal over the square of the normal, which between spheres is 2 q.
+    fn part<const D: usize>(&self, q: &Jet<D, 2>, product: Jet<D, 2>) -> Jet<D, 2> {
+        match self.law.surface {
+            Surface::Sphere => product * q.scaled(2.0).recip(),
+            Surface::Plane(_) | Surface::MovingPlane => product,
+        }
+    }
+
+    /// √(|u|² + ε²) of half of the square of the velocity, its product with the normal and the part of that.
+    fn speed<const D: usize>(&self, [half, along, part]: [Jet<D, 2>; 3]) -> Jet<D, 2> {
+        let square = half.scaled(2.0) - part * along;
+        square.shifted(self.slip_speed * self.slip_speed).sqrt()
     }
 
     /// The work as a function of its vectors.
-    fn work(&self, vectors: [Vector3<f64>; VECTORS]) -> OfDotProducts<VECTORS> {
-        // The normal of spheres is the span.
-        let (normal, is_sphere) = match self.law.surface {
-            Surface::Sphere => (PLACE, true),
-            Surface::Plane(_) | Surface::MovingPlane => (NORMAL, false),
-        };
-        let mut work = OfDotProducts::new(vectors);
+    fn work(&self, vectors: [Vector3<f64>; 4]) -> OfDotProducts<4> {
+        let (mut work, normal) = (OfDotProducts::new(vectors), self.normal_of::<4>());
         let virtuals: [Product<'_>; 2] = [&[[VIRTUAL, VELOCITY]], &[[VIRTUAL, normal]]];
         let products: [Product<'_>; 3] = [
             &[[PLACE, normal]],
             &[[VELOCITY, normal]],
             &[[VELOCITY, VELOCITY]],
         ];
-        work.add(virtuals, products, |[q, along, half_square]| {
-            let [_, force, growth] = self.law.force(&q, &along);
-            if force.value == 0.0 {
-                return [Jet::constant(0.0); 2];
-            }
-            // The part along the normal, of which half of the square is q between spheres.
-            let mut part = along;
-            if is_sphere {
-                part = along * q.scaled(2.0).recip();
-            }
-            let square = half_square.scaled(2.0) - part * along;
-            let speed = square.shifted(self.slip_speed * self.slip_speed).sqrt();
-            let factor = (force * growth * speed.recip()).scaled(-self.coefficient);
+        work.add(virtuals, products, |[q, along, half]| {
+            let part = self.part(&q, along);
+            let factor = self.limit(&q, &along) * self.speed([half, along, part]).recip();
             [factor, -(factor * part)]
         });
         work
     }
 
-    fn local<const N: usize, const M: usize>(&self, p: &SVector<f64, M>) -> FrictionLocal<N> {
+    fn local<const N: usize, const M: usize>(&self, p: &SVector<f64, M>) -> FrictionLocal<N, 4> {
+        self.derivatives(p, |_, [virtual_velocity, place, velocity, normal]| {
+            self.work([virtual_velocity, place, velocity, normal])
+        })
+    }
+
+    /// Derivatives of a work of virtual velocity, place, velocity and normal, and where `K` has room of the readings of a last vector.
+    fn derivatives<const N: usize, const K: usize, const M: usize>(
+        &self,
+        p: &SVector<f64, M>,
+        work: impl FnOnce([Vector3<f64>; 3], [Vector3<f64>; 4]) -> OfDotProducts<K>,
+    ) -> FrictionLocal<N, K> {
         let read = |reading: usize| std::array::from_fn(|v| vector(p, reading * N + v));
         let readings: [[Vector3<f64>; N]; 3] = [0, 1, 2].map(read);
-        let [varied, x, rates] = &readings;
+        let count = FrictionLocal::<N, K>::COUNT;
+        let [varied, x, rates] = readings.each_ref().map(|of| &of[..count]);
         let lever = self.lever(x);
-        let work = self.work([
-            self.velocity(x, varied),
-            self.frame(x) * x[0],
-            self.velocity(x, rates),
-            self.normal(x),
-        ]);
+        let work = work(
+            readings.map(|of| of[N - 1]),
+            [
+                self.velocity(x, varied),
+                self.frame(x) * x[0],
+                self.velocity(x, rates),
+                self.normal(x),
+            ],
+        );
         let rows = std::array::from_fn(|v| {
+            if v == count {
+                return Rows::default();
+            }
             let direct = self.by_vector(v, x);
             let [virtual_velocity, velocity] =
                 [varied, rates].map(|motion| self.by_place(v, x, motion, &lever));
@@ -251,15 +291,14 @@ impl ContactFriction {
             of: *self,
             work,
             rows,
-            weighted: [[[Matrix3::zeros(); NORMAL]; N]; 2],
+            weighted: [[[Matrix3::zeros(); K]; N]; 2],
             readings,
             by,
         };
         // At no variations the work has no second derivatives but by them.
-        let is_still = varied.iter().all(|v| *v == Vector3::zeros());
-        let count = if is_still { 1 } else { NORMAL };
+        let is_still = readings[VIRTUAL].iter().all(|v| *v == Vector3::zeros());
         for v in 0..N {
-            for k in 0..count {
+            for k in (0..K - 1).filter(|k| !is_still || k % 3 == VIRTUAL) {
                 local.weighted[0][v][k] = local.weigh(k, PLACE, v);
                 local.weighted[1][v][k] = local.weigh(k, VELOCITY, v);
             }
@@ -276,7 +315,7 @@ struct ByVelocity {
 }
 
 /// Derivatives by one vector: of its velocity by its motion, and of virtual velocity, place and velocity by its place.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Rows {
     by_motion: [Matrix3<f64>; 1],
     by_place: [Matrix3<f64>; 3],
@@ -284,22 +323,26 @@ struct Rows {
 
 /// Derivatives of the work of friction, block by block.
 #[derive(Clone, Copy, Debug)]
-pub struct FrictionLocal<const N: usize> {
+pub struct FrictionLocal<const N: usize, const K: usize> {
     of: ContactFriction,
-    work: OfDotProducts<VECTORS>,
+    work: OfDotProducts<K>,
     rows: [Rows; N],
     /// Second derivatives of the work by each midpoint and rate and by its vectors.
-    weighted: [[[Matrix3<f64>; NORMAL]; N]; 2],
+    weighted: [[[Matrix3<f64>; K]; N]; 2],
     /// Variations, midpoints and rates.
     readings: [[Vector3<f64>; N]; 3],
     /// By virtual velocity and velocity.
     by: [ByVelocity; 2],
 }
 
-impl<const N: usize> FrictionLocal<N> {
+impl<const N: usize, const K: usize> FrictionLocal<N, K> {
+    /// Number of vectors without a last one of which the readings are vectors of the work.
+    const COUNT: usize = if K > 4 { N - 1 } else { N };
+
     /// Derivatives by an argument of the vectors of the work, from the first on that it moves.
     fn parts(&self, reading: usize, v: usize) -> (usize, &[Matrix3<f64>]) {
         match reading {
+            _ if v == Self::COUNT => (BRISTLE + reading, &IDENTITY),
             PLACE => (0, &self.rows[v].by_place),
             moved => (moved, &self.rows[v].by_motion),
         }
@@ -312,11 +355,22 @@ impl<const N: usize> FrictionLocal<N> {
         blocks.map(|(block, part)| block * part).sum()
     }
 
+    /// Second derivatives of the work by two arguments, of which the second is a midpoint or rate. It is compiled once, not for each pair.
+    #[inline(never)]
+    fn second(&self, readings: [usize; 2], [v, w]: [usize; 2]) -> Matrix3<f64> {
+        let (first, parts) = self.parts(readings[0], v);
+        let weighted = &self.weighted[readings[1] - PLACE][w];
+        let blocks = weighted[first..].iter().zip(parts);
+        let block: Matrix3<f64> = blocks.map(|(block, part)| part.tr_mul(block)).sum();
+        block + self.curved(readings, [v, w])
+    }
+
     /// Second derivatives of the vectors of the work by two arguments, times the derivatives of the work by them.
     fn curved(&self, readings: [usize; 2], [v, w]: [usize; 2]) -> Matrix3<f64> {
         let [varied, x, rates] = &self.readings;
         let [by_virtual, by_velocity] = &self.by;
         match readings {
+            _ if v.max(w) == Self::COUNT => Matrix3::zeros(),
             [VIRTUAL, PLACE] => self.of.mixed([v, w], x, by_virtual),
             [VELOCITY, PLACE] => self.of.mixed([v, w], x, by_velocity),
             [PLACE, PLACE] => {
@@ -329,7 +383,7 @@ impl<const N: usize> FrictionLocal<N> {
     }
 }
 
-impl<const N: usize> Local for FrictionLocal<N> {
+impl<const N: usize, const K: usize> Local for FrictionLocal<N, K> {
     fn value(&self) -> f64 {
         self.work.value
     }
@@ -343,7 +397,8 @@ impl<const N: usize> Local for FrictionLocal<N> {
     }
 }
 
-impl<const N: usize> Derivatives for FrictionLocal<N> {
+impl<const N: usize, const K: usize> Derivatives for FrictionLocal<N, K> {
+    #[inline(never)]
     fn force(&self, i: usize) -> Vector3<f64> {
         let (first, parts) = self.parts(i / N, i % N);
         let slopes = self.work.gradient[first..].iter().zip(parts);
@@ -352,20 +407,95 @@ impl<const N: usize> Derivatives for FrictionLocal<N> {
 
     fn block(&self, i: usize, j: usize) -> Matrix3<f64> {
         let (readings, pair) = ([i / N, j / N], [i % N, j % N]);
-        let weighted = match readings {
-            [VIRTUAL, VIRTUAL] => return Matrix3::zeros(),
-            [_, VIRTUAL] | [PLACE, VELOCITY] => return self.block(j, i).transpose(),
-            [_, reading] => &self.weighted[reading - PLACE][pair[1]],
-        };
-        let (first, parts) = self.parts(readings[0], pair[0]);
-        let blocks = weighted[first..].iter().zip(parts);
-        let block: Matrix3<f64> = blocks.map(|(block, part)| part.tr_mul(block)).sum();
-        block + self.curved(readings, pair)
+        match readings {
+            [VIRTUAL, VIRTUAL] => Matrix3::zeros(),
+            [_, VIRTUAL] | [PLACE, VELOCITY] => {
+                let [a, b] = readings;
+                let [v, w] = pair;
+                self.second([b, a], [w, v]).transpose()
+            }
+            _ => self.second(readings, pair),
+        }
     }
 }
 
 virtual_work! {
-    ContactFriction, 1 of 9 as FrictionLocal<1>;
-    ContactFriction, 4 of 36 as FrictionLocal<4>;
-    ContactFriction, 7 of 63 as FrictionLocal<7>;
+    ContactFriction, 1 of 9 as FrictionLocal<1, 4>;
+    ContactFriction, 4 of 36 as FrictionLocal<4, 4>;
+    ContactFriction, 7 of 63 as FrictionLocal<7, 4>;
+    StickingFriction, 2 of 18 as FrictionLocal<2, 7>;
+    StickingFriction, 5 of 45 as FrictionLocal<5, 7>;
+    StickingFriction, 8 of 72 as FrictionLocal<8, 7>;
+}
+
+/// Virtual work of friction that sticks; arguments as of [`ContactFriction`], with the vector z behind those of each reading.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StickingFriction {
+    /// Limit of the force and scale of the slip.
+    pub friction: ContactFriction,
+    /// Greatest elastic displacement in mm.
+    pub displacement: f64,
+}
+
+/// Length of z up to which it does not slip.
+const ELASTIC: f64 = 0.9;
+
+impl StickingFriction {
+    fn work(&self, vectors: [Vector3<f64>; 7]) -> OfDotProducts<7> {
+        let (of, length) = (&self.friction, self.displacement);
+        let (mut work, normal) = (OfDotProducts::new(vectors), of.normal_of::<7>());
+        let [varied, bristle, rate] = [0, 1, 2].map(|reading| BRISTLE + reading);
+        let [q, along]: [Product<'_>; 2] = [&[[PLACE, normal]], &[[VELOCITY, normal]]];
+        let force: [Product<'_>; 2] = [&[[VIRTUAL, bristle]], &[[VIRTUAL, normal]]];
+        work.add(
+            force,
+            [q, along, &[[bristle, normal]]],
+            |[q, along, lift]| {
+                let limit = of.limit(&q, &along);
+                [limit, -(limit * of.part(&q, lift))]
+            },
+        );
+        let equation: [Product<'_>; 4] = [
+            &[[varied, rate]],
+            &[[varied, VELOCITY]],
+            &[[varied, normal]],
+            &[[varied, bristle]],
+        ];
+        let products = [q, along, &[[VELOCITY, VELOCITY]], &[[bristle, bristle]]];
+        let scale = of.coefficient * of.law.stiffness * length.powf(of.law.exponent);
+        work.add(equation, products, |[q, along, half, stretch]| {
+            let part = of.part(&q, along);
+            let speed = of.speed([half, along, part]);
+            let square = stretch
+                .scaled(2.0)
+                .shifted(-0.5 * (1.0 + ELASTIC * ELASTIC));
+            let [_, slip, first, second] = ramp(square.value, 1.0 - ELASTIC * ELASTIC);
+            let slip = square.map([slip, first, second, 0.0]);
+            [
+                Jet::constant(-length),
+                Jet::constant(1.0),
+                -part,
+                -(slip * speed),
+            ]
+            .map(|factor| factor.scaled(scale))
+        });
+        work
+    }
+
+    fn local<const N: usize, const M: usize>(&self, p: &SVector<f64, M>) -> FrictionLocal<N, 7> {
+        let work =
+            |[varied, bristle, rate]: [Vector3<f64>; 3],
+             [virtual_velocity, place, velocity, normal]: [Vector3<f64>; 4]| {
+                self.work([
+                    virtual_velocity,
+                    place,
+                    velocity,
+                    varied,
+                    bristle,
+                    rate,
+                    normal,
+                ])
+            };
+        self.friction.derivatives(p, work)
+    }
 }

@@ -28,7 +28,7 @@ pub use constraint::{Coincidence, Orthogonality};
 pub use contact::{ContactDamping, ContactElasticity, ContactLaw, OfForm, Surface, Touch};
 pub use dot_products::OfDotProducts;
 pub use elastic_law::{ElasticConstants, ElasticLaw, Elasticity, NeoHooke};
-pub use friction::{ContactFriction, FrictionLocal};
+pub use friction::{ContactFriction, FrictionLocal, StickingFriction};
 pub use kinetic::{
     DeadLoad, FollowingForce, Gravity, KineticCoupling, KineticEnergy, SurfaceCharge,
 };

@@ -362,6 +362,7 @@ fn touching(sphere: (impl Into<Carrier>, Vector3<f64>, f64), side: ContactSide) 
         restitution: None,
         friction: None,
         slip_speed: SLIP_SPEED,
+        stick: None,
     }
 }
 
@@ -382,6 +383,8 @@ builder! {
     friction(coefficient: f64) |of| of.friction = Some(coefficient);
     /// Speed in mm/ms of slip up to which friction grows: what sticks creeps at a part of it.
     slip_speed(speed: f64) |of| of.slip_speed = speed;
+    /// Greatest elastic displacement in mm of friction that sticks and does not creep.
+    stick(displacement: f64) |of| of.stick = Some(displacement);
 }
 
 makers! {

@@ -246,6 +246,7 @@ impl Construction<'_> {
         body::build_dampers(self, &mut terms);
         body::build_springs(self, &mut terms);
         loads::build(self, &mut terms);
+        terms.bristles.clone_from(&self.internals.bristles);
         self.system.components.build(&mut terms);
         let contacts = std::mem::take(&mut terms.contacts);
         let (terms, present, left_out) = terms.finish(rank);

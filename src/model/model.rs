@@ -167,7 +167,8 @@ impl Model {
         own.map(|(coordinate, _)| coordinate).collect()
     }
 
-    /// Gives internal coordinates their values at joint coordinates (by joint of the scene); muscles and blocks have been held there for long.
+    /// Gives internal coordinates their values at joint coordinates (by joint of the scene); muscles and blocks have been held there for long, and
+    /// nothing has slipped.
     pub(super) fn place_internals(&self, z: &mut [f64], joints: &[f64]) {
         for (coordinate, joint) in self.internal_joints() {
             z[coordinate] = joints[joint];
@@ -178,7 +179,7 @@ impl Model {
         let x = self.action.map.placed(z).x;
         for (coordinate, kind) in self.internal_kinds() {
             match kind {
-                InternalKind::Joint(_) | InternalKind::Charge(_) => {}
+                InternalKind::Joint(_) | InternalKind::Charge(_) | InternalKind::Bristle => {}
                 InternalKind::Branch { muscle, .. } => {
                     let length = self.system.muscles[muscle].length();
                     z[coordinate] = (x[self.spans[muscle]].norm() / length).ln();
@@ -219,10 +220,18 @@ impl Model {
         self.branches().map(|(coordinate, _)| coordinate)
     }
 
-    /// Coordinates that muscles and blocks remember: they have no momentum, and nothing brings them to rest but time.
+    /// Coordinates that muscles, blocks and contacts remember: they have no momentum, and nothing brings them to rest but time.
     pub fn memory(&self) -> impl Iterator<Item = usize> + '_ {
         let all = self.internal_kinds();
         all.filter_map(|(coordinate, kind)| kind.is_memory().then_some(coordinate))
+    }
+
+    /// Coordinates that equilibria do not seek: prescribed ones, and elastic displacements of contacts, as friction does not act there.
+    pub fn held_at_rest(&self) -> Vec<usize> {
+        let bristles = self.internals_of(|kind| (kind == InternalKind::Bristle).then_some(()));
+        let mut held = self.prescribed_coordinates();
+        held.extend(bristles.map(|(coordinate, ())| coordinate));
+        held
     }
 
     /// Returns true if it has Maxwell branches, whose stretches follow the motion in times of their own.

@@ -61,7 +61,8 @@ pub fn tied(mut system: System) -> System {
     system
 }
 
-/// A chain of two bodies or more with contacts that are felt from afar: with planes of the ground and of a body, and between bodies.
+/// A chain of two bodies or more with contacts that are felt from afar: with planes of the ground and of a body, and between bodies, of which
+/// those of two bodies stick.
 pub fn touching(mut system: System) -> System {
     let point = |body, x: f64, y: f64, z: f64| Attachment {
         body,
@@ -79,6 +80,7 @@ pub fn touching(mut system: System) -> System {
         }),
         friction: Some(0.3),
         slip_speed: 0.5,
+        stick: None,
     };
     let wall = ContactSide::Plane {
         at: point(None, -5.0, 0.0, 0.0),
@@ -98,8 +100,12 @@ pub fn touching(mut system: System) -> System {
     };
     system.components.contacts = vec![
         contact("wall", point(Some(1), 5.0, 80.0, 12.0), 8.0, wall),
-        contact("lid", point(Some(1), 3.0, 60.0, 4.0), 6.0, lid),
         Contact {
+            stick: Some(2.0),
+            ..contact("lid", point(Some(1), 3.0, 60.0, 4.0), 6.0, lid)
+        },
+        Contact {
+            stick: Some(3.0),
             elasticity: ContactElasticLaw::Hertz(vec![solid; 2]),
             ..contact("own", point(Some(1), 0.0, 70.0, 0.0), 12.0, other)
         },

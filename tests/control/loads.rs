@@ -1,10 +1,11 @@
 //! Loads that are sought: a closed form, bounds, and what messages say of wrong ones.
 
+use nalgebra::Vector3;
 use proboscis::System;
 use proboscis::control::problem::{Control, Task};
 use proboscis::files::read_problem;
 use proboscis::nlp::Status;
-use proboscis::prelude::{Body, GROUND, Joint, Load, Simulation, State, X};
+use proboscis::prelude::{Body, Contact, GROUND, Joint, Load, Simulation, State, X, Y};
 use proboscis::workflow::{Optimum, SolveLimits, optimise};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -86,6 +87,24 @@ fn least_effort_moves_a_mass_as_its_closed_form_with_order_two() {
         let ratio = errors[0] / errors[1];
         assert!((ratio - 4.0).abs() < 0.1, "{coordinates}: {errors:?}");
     }
+}
+
+#[test]
+fn least_effort_slides_a_mass_against_friction_that_sticks() {
+    // F = 6 − 12 t + μ N with a normal force of 1 N and μ = 0.5, ∫F² = 12.25 N² s.
+    let (mut system, control) = cart(40, &[], "reduced");
+    let centre = (GROUND, Vector3::zeros(), 0.0);
+    let floor = Contact::on_plane(centre, (GROUND, Y * 0.1, Y)).stiffness(10.0);
+    let floor = floor.friction(0.5).slip_speed(0.02).stick(20.0);
+    let mut floor = floor.named("floor");
+    floor.sphere.centre.body = Some(0);
+    system.components.contacts.push(floor);
+    let optimum = solved(&system, &control);
+    assert_eq!(optimum.solution.status, Status::Solved);
+    let error = optimum.solution.objective - 12.25;
+    println!("{error} after {}", optimum.solution.iterations.len());
+    // Friction grows over 20 mm, which take less than 0.1 s: up to 2 · 6.5 N · 0.5 N · 0.1 s are missing.
+    assert!((-0.65..0.0).contains(&error), "{error}");
 }
 
 #[test]

@@ -1,10 +1,15 @@
 //! Energies and virtual works of contacts: their derivatives are those of naive formulas, within the ramp of the overlap and beyond it.
 
+use crate::common::random::Random;
 use crate::formulas::law;
+use crate::gathered::jet_of;
 use crate::naive_formulas::{Formula, along, polarised, squared_length, three};
-use nalgebra::Vector3;
+use nalgebra::{SVector, Vector3};
 use num_dual::DualNum;
-use proboscis::energy::{ContactDamping, ContactElasticity, ContactFriction, ContactLaw, Surface};
+use proboscis::energy::{
+    ContactDamping, ContactElasticity, ContactFriction, ContactLaw, StickingFriction, Surface,
+};
+use proboscis::math::Jet;
 
 /// s/w = y/2 + 5/64 + 15/16 y² − 5/4 y⁴ + y⁶ of y = x/w: the half of x, and an even part.
 fn ramp<D: DualNum<f64> + Copy>(x: D, width: f64) -> D {
@@ -89,6 +94,9 @@ formulas! {
     ContactFriction: 9, 3;
     ContactFriction: 36, 3;
     ContactFriction: 63, 3;
+    StickingFriction: 18, 3;
+    StickingFriction: 45, 3;
+    StickingFriction: 72, 3;
 }
 
 /// A formula of vectors by reading and number.
@@ -164,6 +172,37 @@ impl WrittenAgain for ContactFriction {
     }
 }
 
+impl WrittenAgain for StickingFriction {
+    fn written_again<D: DualNum<f64> + Copy>(&self, x: &[Vec<[D; 3]>]) -> D {
+        let ContactFriction {
+            law, coefficient, ..
+        } = self.friction;
+        let [varied, at, rates] = [0, 1, 2].map(|reading| {
+            let (last, before) = x[reading].split_last().unwrap();
+            (*last, before)
+        });
+        let [force, growth, _] = normal(&law, [varied.1, at.1, rates.1], 3);
+        let [slip, virtual_slip] =
+            [rates, varied].map(|motion| slip(&self.friction, at.1, motion.1));
+        let square = squared_length(at.0);
+        let t = (square - 0.81) / 0.19;
+        let slips = match t.re() {
+            ..=0.0 => square * 0.0,
+            1.0.. => square * 0.0 + 1.0,
+            _ => {
+                let rest = -t + 1.0;
+                -(rest * rest * rest * (t * (t * 6.0 + 3.0) + 1.0)) + 1.0
+            }
+        };
+        let speed = (squared_length(slip) + self.friction.slip_speed.powi(2)).sqrt();
+        let lag = sum(rates.0, slip, -1.0 / self.displacement);
+        let back = slips * speed / self.displacement;
+        let equation = polarised(varied.0, lag) + polarised(varied.0, at.0) * back;
+        let stiffness = coefficient * law.stiffness * self.displacement.powf(law.exponent + 1.0);
+        force * growth * polarised(at.0, virtual_slip) * -coefficient - equation * stiffness
+    }
+}
+
 /// Linear within a wide ramp, and after Hertz beyond a narrow one.
 fn laws(surface: Surface) -> [ContactLaw; 2] {
     let law = |exponent, distance, smoothing| ContactLaw {
@@ -213,6 +252,50 @@ fn friction_has_the_derivatives_of_its_naive_formula() {
             }
             law::<_, 36>("friction", &friction, 0.4, 1.1);
             law::<_, 63>("friction", &friction, 0.4, 1.1);
+            // Lengths of z on both sides of where it begins to slip, and of one.
+            let sticking = StickingFriction {
+                friction,
+                displacement: 0.8,
+            };
+            if surface != Surface::MovingPlane {
+                law::<_, 18>("sticking", &sticking, 0.45, 0.65);
+            }
+            law::<_, 45>("sticking", &sticking, 0.45, 0.65);
+            law::<_, 72>("sticking", &sticking, 0.45, 0.65);
         }
     }
+}
+
+#[test]
+fn what_slips_takes_energy() {
+    let mut random = Random(7);
+    let mut largest = 0.0_f64;
+    for law in laws(Surface::Plane(NORMAL)) {
+        let friction = ContactFriction {
+            law,
+            radii: [0.0; 2],
+            coefficient: 0.3,
+            slip_speed: 0.1,
+        };
+        let sticking = StickingFriction {
+            friction,
+            displacement: 0.8,
+        };
+        for _ in 0..100 {
+            // Variations are zero, and the rate of z is sought.
+            let p = SVector::<f64, 18>::from_fn(|i, _| match i {
+                ..6 | 15.. => 0.0,
+                _ => random.between(-1.2, 1.2),
+            });
+            let jet: Jet<18, 1> = jet_of(&sticking, &p, &SVector::zeros());
+            let force: Vector3<f64> = jet.gradient.fixed_rows::<3>(0).into();
+            let equation: Vector3<f64> = jet.gradient.fixed_rows::<3>(3).into();
+            let velocity: Vector3<f64> = p.fixed_rows::<3>(12).into();
+            let scale = 0.3 * law.stiffness * 0.8_f64.powf(law.exponent);
+            let power = force.dot(&(velocity - equation / scale));
+            assert!(power < 1e-14, "{power}");
+            largest = largest.max(-power);
+        }
+    }
+    assert!(largest > 1e-2, "nothing slips: {largest}");
 }

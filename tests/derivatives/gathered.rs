@@ -57,7 +57,9 @@ pub(crate) fn jet_of<E: Formula<M>, const M: usize, const ORDER: usize>(
         6 => both::<E, M, 6>(&local),
         9 => both::<E, M, 9>(&local),
         12 => both::<E, M, 12>(&local),
+        15 => both::<E, M, 15>(&local),
         21 => both::<E, M, 21>(&local),
+        24 => both::<E, M, 24>(&local),
         count => unreachable!("no formula of {count} vectors"),
     };
     let mut jet = Jet::constant(local.value());

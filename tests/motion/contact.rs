@@ -7,11 +7,11 @@ use proboscis::dynamics::{DiscreteTrajectory, Start, observations};
 use proboscis::model::{Coordinates, Model};
 use proboscis::prelude::*;
 
-const BOTH: [Coordinates; 2] = [Coordinates::Reduced, Coordinates::Redundant];
-const MASS: f64 = 20.0;
-const RADIUS: f64 = 10.0;
+pub(crate) const BOTH: [Coordinates; 2] = [Coordinates::Reduced, Coordinates::Redundant];
+pub(crate) const MASS: f64 = 20.0;
+pub(crate) const RADIUS: f64 = 10.0;
 /// Gravity in mm/ms².
-const GRAVITY: f64 = 9.81e-3;
+pub(crate) const GRAVITY: f64 = 9.81e-3;
 
 /// A ball on a slide along y, at a gap in mm from the ground.
 fn falling(gap: f64) -> (System, Handle<Body>, Handle<Joint>) {
@@ -28,7 +28,7 @@ fn floor(ball: Handle<Body>, gap: f64) -> Contact {
     Contact::on_plane(sphere, (GROUND, Vector3::zeros(), Y))
 }
 
-fn model(system: &System, coordinates: Coordinates, h: f64) -> Model {
+pub(crate) fn model(system: &System, coordinates: Coordinates, h: f64) -> Model {
     Model::new(system.clone(), Some(coordinates), h, &[]).unwrap()
 }
 
@@ -119,14 +119,14 @@ fn a_ball_rests_in_its_indentation() {
 }
 
 /// A sphere, which may be a point, on a plane that falls towards x by an angle in rad; it moves in the plane (x, y), and overlaps as at rest.
-struct Incline {
-    system: System,
-    down: Vector3<f64>,
+pub(crate) struct Incline {
+    pub(crate) system: System,
+    pub(crate) down: Vector3<f64>,
 }
 
 const STIFFNESS: f64 = 10.0;
 
-fn incline(alpha: f64, radius: f64, friction: f64) -> Incline {
+pub(crate) fn incline(alpha: f64, radius: f64, friction: f64) -> Incline {
     let normal = Vector3::new(alpha.sin(), alpha.cos(), 0.0);
     let down = Vector3::new(alpha.cos(), -alpha.sin(), 0.0);
     let mut system = System::new("incline");
@@ -141,7 +141,13 @@ fn incline(alpha: f64, radius: f64, friction: f64) -> Incline {
 }
 
 /// Mean acceleration down the plane in the second half of a time in ms.
-fn acceleration(incline: &Incline, start: &Start, model: &Model, h: f64, time: f64) -> f64 {
+pub(crate) fn acceleration(
+    incline: &Incline,
+    start: &Start,
+    model: &Model,
+    h: f64,
+    time: f64,
+) -> f64 {
     let steps = (time / h).round() as usize;
     let discrete = motion(model, start, h, steps, &[]);
     let way = |k: usize| way(model, &discrete, k, &incline.down);
@@ -150,7 +156,12 @@ fn acceleration(incline: &Incline, start: &Start, model: &Model, h: f64, time: f
     (c - 2.0 * b + a) / (quarter as f64 * h).powi(2)
 }
 
-fn way(model: &Model, discrete: &DiscreteTrajectory, k: usize, down: &Vector3<f64>) -> f64 {
+pub(crate) fn way(
+    model: &Model,
+    discrete: &DiscreteTrajectory,
+    k: usize,
+    down: &Vector3<f64>,
+) -> f64 {
     let instant = crate::common::placed(model, &discrete.z[k]);
     model.poses(&instant)[0].centre.dot(down)
 }

@@ -43,6 +43,7 @@ mod screws;
 mod similar;
 mod single_joints;
 mod squeezer;
+mod sticking;
 mod tolerance;
 mod tree;
 mod urdf;

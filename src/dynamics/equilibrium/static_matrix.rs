@@ -56,7 +56,7 @@ fn entries(model: &Model) -> (EntryList, Symmetry) {
         entries.add(added + place, (i, i));
     }
     // The tangent is negative where a state is stable.
-    entries.hold(&model.prescribed_coordinates(), -1.0);
+    entries.hold(&model.held_at_rest(), -1.0);
     let mut terms = model.action.intervals.terms.iter();
     let symmetry = match terms.any(|term| term.kind() == TermKind::AppliedWork) {
         true => Symmetry::Unsymmetric,

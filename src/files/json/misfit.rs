@@ -172,7 +172,7 @@ const TABLE: [(&[&str], &str); 6] = [
     ),
     (
         &["coulomb_friction", "stiction"],
-        "\"contacts\" have a \"friction\", which creeps where it sticks; joints have a viscous \"damping\"",
+        "\"contacts\" have a \"friction\", which creeps where it sticks without \"stick\"; joints have a viscous \"damping\"",
     ),
     (
         &["fluid", "drag", "aerodynamics", "buoyancy"],

@@ -31,8 +31,11 @@ objects! {
         pub restitution: Option<RestitutionSpec>,
         /// Coefficient of friction; without it the contact is smooth.
         pub friction: Option<f64>,
-        /// Speed of slip up to which friction grows, SI unit m/s; 0.1 mm/s where not written. What sticks creeps at a part of it.
+        /// Speed of slip up to which friction grows, SI unit m/s; 0.1 mm/s where not written. What sticks creeps at a part of it, unless `stick`
+        /// is written.
         pub slip_speed: Option<Quantity<Velocity>>,
+        /// Greatest elastic displacement before the contact slips, SI unit m; with it friction holds without creep.
+        pub stick: Option<Quantity<Length>>,
     }
 
     /// A sphere of a body.
@@ -101,6 +104,8 @@ impl ContactPlaneSpec {
 pub(crate) fn contact(spec: &ContactSpec, bodies: &[String], scope: &Scope<'_>) -> Result<Contact> {
     refuse!(if spec.slip_speed.is_some() && spec.friction.is_none(), scope.key("slip_speed");
         found "\"slip_speed\"", expected "no such key, as a contact without \"friction\" does not read it");
+    refuse!(if spec.stick.is_some() && spec.friction.is_none(), scope.key("stick");
+        found "\"stick\"", expected "no such key, as a contact without \"friction\" does not read it");
     let side = the_one!(scope, spec;
         "plane" plane |place, plane| plane.side(bodies, place)?;
         "other" other |place, other| ContactSide::Sphere(other.sphere(bodies, place)?);
@@ -128,5 +133,6 @@ pub(crate) fn contact(spec: &ContactSpec, bodies: &[String], scope: &Scope<'_>) 
         restitution,
         friction: spec.friction.filter(|friction| *friction != 0.0),
         slip_speed: spec.slip_speed.as_ref().map_or(SLIP_SPEED, Quantity::value),
+        stick: Quantity::present(&spec.stick),
     })
 }

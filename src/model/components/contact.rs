@@ -1,9 +1,11 @@
 //! A contact of a round shape with a plane or another round shape.
 
 use crate::energy::{
-    ContactDamping, ContactElasticity, ContactFriction, ContactLaw, Energy, Surface,
+    ContactDamping, ContactElasticity, ContactFriction, ContactLaw, Energy, StickingFriction,
+    Surface,
 };
 use crate::functional::Element;
+use crate::kinematics::MaterialVector;
 use crate::math::{DIRECTION, Fault, Key, not_negative, positive, refuse};
 use crate::model::components::component::Component;
 use crate::model::layout::contact_reading::ContactReading;
@@ -11,6 +13,7 @@ use crate::model::system::bodies::Attachment;
 use crate::model::system::joints::triad;
 use crate::model::terms::{Terms, mid, rate};
 use nalgebra::Vector3;
+use std::ops::Range;
 
 /// A compliant contact with or without damping and friction.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,6 +34,8 @@ pub struct Contact {
     pub friction: Option<f64>,
     /// Speed in mm/ms of slip up to which friction grows.
     pub slip_speed: f64,
+    /// Greatest elastic displacement in mm of friction that sticks; without it friction is a function of the slip.
+    pub stick: Option<f64>,
 }
 
 /// A sphere of a body or of the ground.
@@ -130,6 +135,32 @@ impl Restitution {
 }
 
 impl Contact {
+    /// The points between which it acts.
+    pub(in crate::model) fn ends(&self) -> [Attachment; 2] {
+        [self.sphere.centre, *self.origin()]
+    }
+
+    /// Number of the components of its elastic displacement: along a plane, or in space between spheres.
+    pub(in crate::model) fn bristles(&self) -> usize {
+        let holds = self.friction.is_some_and(|coefficient| coefficient > 0.0);
+        match (self.stick, &self.side) {
+            (Some(_), ContactSide::Plane { .. }) if holds => 2,
+            (Some(_), ContactSide::Sphere(_)) if holds => 3,
+            _ => 0,
+        }
+    }
+
+    /// The vector of these coordinates, in the frame of a plane that turns.
+    fn bristle(&self, coordinates: Range<usize>, surface: Surface) -> MaterialVector {
+        let mut vector = MaterialVector::coordinates(coordinates);
+        if let Surface::Plane(normal) = surface {
+            for (term, tangent) in vector.terms.iter_mut().zip(triad(&normal)) {
+                term.directors = tangent;
+            }
+        }
+        vector
+    }
+
     /// The point of the other side from which the contact reads its span.
     fn origin(&self) -> &Attachment {
         match &self.side {
@@ -205,11 +236,27 @@ impl Contact {
             return terms.without(FRICTION, "no contact that moves names a friction");
         };
         let (friction, vectors) = self.friction_law(reading, coefficient, terms);
+        let bristles = terms.bristles.get(terms.contacts.len()).cloned();
+        let bristles = bristles.filter(|coordinates| !coordinates.is_empty());
         let call = [FRICTION, "friction of"];
-        match vectors.len() {
-            1 => add::<_, 9, 3>(call, name, friction, &vectors, terms),
-            4 => add::<_, 36, 12>(call, name, friction, &vectors, terms),
-            _ => add::<_, 63, 21>(call, name, friction, &vectors, terms),
+        match (self.stick.zip(bristles), vectors.len()) {
+            (Some((displacement, coordinates)), count) => {
+                let bristle = terms.vector(self.bristle(coordinates, law.surface));
+                reading.bristle = Some(bristle);
+                let read = [&vectors[..], &[bristle]].concat();
+                let sticking = StickingFriction {
+                    friction,
+                    displacement,
+                };
+                match count {
+                    1 => add::<_, 18, 6>(call, name, sticking, &read, terms),
+                    4 => add::<_, 45, 15>(call, name, sticking, &read, terms),
+                    _ => add::<_, 72, 24>(call, name, sticking, &read, terms),
+                }
+            }
+            (None, 1) => add::<_, 9, 3>(call, name, friction, &vectors, terms),
+            (None, 4) => add::<_, 36, 12>(call, name, friction, &vectors, terms),
+            (None, _) => add::<_, 63, 21>(call, name, friction, &vectors, terms),
         }
         reading.friction = Some((friction, vectors));
     }
@@ -318,7 +365,7 @@ impl Component for Contact {
     }
 
     fn points(&self) -> Vec<Attachment> {
-        vec![self.sphere.centre, *self.origin()]
+        self.ends().to_vec()
     }
 
     fn outlines(&self) -> Vec<Vec<Attachment>> {
@@ -377,7 +424,9 @@ impl Component for Contact {
             positive("restitution.speed", speed)?;
         }
         not_negative("friction", self.friction.unwrap_or(0.0))?;
-        positive("slip_speed", self.slip_speed)
+        positive("slip_speed", self.slip_speed)?;
+        self.stick
+            .map_or(Ok(()), |length| positive("stick", length))
     }
 
     fn is_prestressed(&self) -> bool {
@@ -403,6 +452,7 @@ impl Component for Contact {
             span,
             normal,
             friction: None,
+            bristle: None,
         };
         let call = [ELASTICITY, "stiffness of"];
         let (read, energy) = (reading.normal_vectors(), ContactElasticity(reading.law));

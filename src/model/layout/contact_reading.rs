@@ -16,6 +16,8 @@ pub struct ContactReading {
     pub(crate) normal: Option<usize>,
     /// Friction with the vectors that it reads.
     pub(crate) friction: Option<(ContactFriction, Vec<usize>)>,
+    /// Elastic displacement of one that sticks, over its greatest length.
+    pub(crate) bristle: Option<usize>,
 }
 
 impl ContactReading {
@@ -54,7 +56,8 @@ impl ContactReading {
         let Touch { overlap, force } = self.touch(at);
         let friction = self.friction.iter().flat_map(|(friction, vectors)| {
             let read = |all: &[Vector]| vectors.iter().map(|&v| all[v]).collect::<Vec<_>>();
-            friction.of_rates(&read(at[0]), &read(at[1]))
+            let bristle = self.bristle.map(|v| at[0][v]);
+            friction.of_rates(&read(at[0]), &read(at[1]), bristle)
         });
         [force, -overlap].into_iter().chain(friction).collect()
     }

@@ -14,6 +14,7 @@ use crate::model::presolve::graph::Graph;
 use crate::model::presolve::presolved::Presolved;
 use crate::model::system::{Fidelity, Joint, JointKind, System};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// An internal coordinate.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,10 +44,12 @@ pub(crate) enum InternalKind {
     },
     /// The charge of a muscle or of electrodes behind the resistor of a source, in a unit of its own: a current brings and takes it.
     Charge(usize),
+    /// A component of the elastic displacement of a contact that sticks, over its greatest length.
+    Bristle,
 }
 
 impl InternalKind {
-    /// Returns true if it is what a muscle or block remembers: it has no momentum, and nothing brings it to rest but time.
+    /// Returns true if it is what a muscle, block or contact remembers: it has no momentum, and nothing brings it to rest but time.
     pub(crate) fn is_memory(self) -> bool {
         !matches!(self, Self::Joint(_))
     }
@@ -74,6 +77,11 @@ impl Internal {
 
     fn of_charge(name: &str, source: usize) -> Self {
         Self::new(format!("charge of {name}"), InternalKind::Charge(source))
+    }
+
+    fn of_bristle(name: &str, component: usize) -> Self {
+        let name = format!("elastic displacement {} of {name}", component + 1);
+        Self::new(name, InternalKind::Bristle)
     }
 
     /// Those of the viscous strains of the branches of an element, branch by branch and point by point.
@@ -106,6 +114,8 @@ pub(crate) struct Internals {
     of_tree: Vec<Option<usize>>,
     /// Number of the coordinates before them.
     first: usize,
+    /// Coordinates of the elastic displacement of each contact that acts in a motion; none of one that does not stick.
+    pub(crate) bristles: Vec<Range<usize>>,
     /// First in the list of each block and element with Maxwell branches.
     pub(crate) of_elements: BTreeMap<(usize, usize), usize>,
     pub(crate) list: Vec<Internal>,
@@ -156,6 +166,19 @@ impl Internals {
         }
         let circuits = blocks.circuits.iter();
         list.extend(circuits.map(|of| Internal::of_charge(&of.name, of.source)));
+        let first = of_bodies + of_nodes;
+        let mut bristles = Vec::new();
+        let contacts = scene.components.contacts.iter();
+        let acting = contacts.filter(|one| {
+            let [a, b] = one.ends().map(|end| presolved.carrier(end.body));
+            analysis.of_motion && a != b
+        });
+        for contact in acting {
+            let components = 0..contact.bristles();
+            let before = first + list.len();
+            bristles.push(before..before + components.len());
+            list.extend(components.map(|k| Internal::of_bristle(&contact.name, k)));
+        }
         let mut of_elements = BTreeMap::new();
         let moving = blocks.list.iter().enumerate();
         let moving = moving.filter(|(_, block)| analysis.of_motion && !block.is_immobile);
@@ -168,7 +191,8 @@ impl Internals {
         }
         Self {
             of_tree,
-            first: of_bodies + of_nodes,
+            first,
+            bristles,
             of_elements,
             list,
         }

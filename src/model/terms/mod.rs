@@ -23,6 +23,7 @@ use crate::model::system::bodies::Attachment;
 use crate::model::system::maxwell::Response;
 use std::any::Any;
 use std::fmt;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Reason for the springs of branches at rest.
@@ -56,6 +57,8 @@ pub struct Terms<'a> {
     of_motion: bool,
     response: Response,
     sought: Sought,
+    /// Coordinates of the elastic displacement of each contact, in the order in which they are added; none of one that does not stick.
+    pub(super) bristles: Vec<Range<usize>>,
     /// Readings of the contacts that were added.
     pub(super) contacts: Vec<ContactReading>,
     collected: Vec<Collected>,
@@ -147,6 +150,7 @@ impl<'a> Terms<'a> {
             of_motion,
             response,
             sought,
+            bristles: Vec::new(),
             contacts: Vec::new(),
             collected: Vec::new(),
             present: Vec::new(),
