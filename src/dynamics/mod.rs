@@ -49,7 +49,8 @@ pub use midpoint::{Midpoint, Stepper};
 pub use momenta::{Start, last_momentum, rates_of_momentum};
 pub use observe::{observations, observed};
 pub use resolution::{
-    Balance, LocalError, STEPS_OF_TOUCH, ShortTouch, distance_between, local_error, short_touches,
+    Balance, LocalError, STEPS_OF_TOUCH, ShortTouch, distance_between, least_gaps, local_error,
+    short_touches,
 };
 pub use simulate::{Lengths, StepControl, go_on, simulate, simulate_by};
 pub use singular_configurations::{

@@ -326,6 +326,21 @@ pub fn short_touches(model: &Model, discrete: &DiscreteTrajectory) -> Vec<ShortT
     shortest.into_iter().flatten().collect()
 }
 
+/// The least gap in mm of each contact at the instants of a motion, by the names of contacts; negative where both sides overlap.
+pub fn least_gaps<'m>(model: &'m Model, discrete: &DiscreteTrajectory) -> Vec<(&'m str, f64)> {
+    let mut here = model.action.map.instant();
+    let mut gaps = vec![f64::INFINITY; model.contacts.len()];
+    for z in &discrete.z {
+        here.z.copy_from_slice(z);
+        model.action.map.vectors(&mut here);
+        for (gap, contact) in gaps.iter_mut().zip(&model.contacts) {
+            *gap = gap.min(-contact.touch([&here.x, &here.x]).overlap);
+        }
+    }
+    let names = model.contacts.iter().map(|one| one.name.as_str());
+    names.zip(gaps).collect()
+}
+
 /// Greatest distance in mm between points of a motion at some instants and those of another motion at all of its instants.
 pub fn distance_between(
     model: &Model,

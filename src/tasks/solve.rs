@@ -228,6 +228,7 @@ fn remarks(
     }
     remarks.note("earlier_solution", carried(&optimum.carried));
     remarks.note("second_start", optimum.restarted.map(restarted));
+    remarks.note("contact_stages", solve_messages::stages(optimum));
     let outside = warnings::domain_note(&result.outside, true);
     remarks.warn("outside_domain", outside);
     let beyond = out_of_range(&optimum.model, &result.discrete);

@@ -90,6 +90,17 @@ pub(crate) fn restarted(restarted: Restarted) -> String {
     format!("found from {from}; the first start ended {first}")
 }
 
+/// Describes the stages of contacts that led to an optimum.
+pub(crate) fn stages(optimum: &Optimum) -> Option<String> {
+    let stages = optimum.stages;
+    let plural = if stages == 1 { "" } else { "s" };
+    (stages > 0).then(|| {
+        format!(
+            "solved after {stages} stage{plural} with softer contacts, each from the one before"
+        )
+    })
+}
+
 /// Lists the values of a motion at its end or at waypoints for which costs ask; of many the farthest of each unit in turn.
 pub(crate) fn ends(values: &[FinalValue]) -> Vec<String> {
     let mut order: Vec<&FinalValue> = values.iter().collect();

@@ -17,7 +17,7 @@ use crate::workflow::program::{
     Prepared, multipliers_of, prepare_together, program_motions, resolve_each, with_found,
 };
 use crate::workflow::remark::phase;
-use crate::workflow::resimulate::resimulate;
+use crate::workflow::resimulate::{Verification, resimulate};
 use crate::workflow::solves::{Solves, bound};
 use std::collections::BTreeMap;
 use std::mem;
@@ -81,6 +81,7 @@ impl Together {
 pub(crate) fn attempt(
     task: &ControlTask<'_>,
     allowed: SolveLimits,
+    verification: Verification,
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Together, WorkflowError> {
     let began = Instant::now();
@@ -128,7 +129,8 @@ pub(crate) fn attempt(
     for (number, (((one, resolved), mut part), carried)) in each {
         let own = part_of(&places, number, &solution, &mut part);
         let before = optima.last().filter(|_| one.control.continues[0]);
-        let optimum = Optimum::new(one, resolved, part, own, before.map(|phase| &phase.motion));
+        let before = before.map(|phase| &phase.motion);
+        let optimum = Optimum::new(one, resolved, part, own, before, verification);
         optima.push(Optimum {
             setup,
             carried,
@@ -157,6 +159,7 @@ impl Optimum {
         mut program: Transcription<'_>,
         solution: SolverResult,
         before: Option<&Solution>,
+        verification: Verification,
     ) -> Result<Self, WorkflowError> {
         let MotionTask {
             system, control, ..
@@ -205,6 +208,7 @@ impl Optimum {
             resimulation: None,
             tested: 0.0,
             restarted: None,
+            stages: 0,
             shortest: Shortest::Unknown,
             half_period: None,
             stopped: None,
@@ -216,7 +220,7 @@ impl Optimum {
             not_found: None,
         };
         if is_solved {
-            out.verify(control, &discrete, before);
+            out.verify(control, &discrete, before, verification);
         }
         Ok(out)
     }
@@ -228,6 +232,7 @@ impl Optimum {
         control: &Control,
         discrete: &DiscreteTrajectory,
         before: Option<&Solution>,
+        verification: Verification,
     ) {
         let Self {
             model,
@@ -244,7 +249,8 @@ impl Optimum {
         phase("simulating under the optimal inputs");
         let began = Instant::now();
         let tolerance = control.solver.tolerance;
-        let found = resimulate(model, control, &boundary.start, motion, tolerance);
+        let start = &boundary.start;
+        let found = resimulate(model, control, start, motion, tolerance, verification);
         self.resimulation = Some(found);
         self.tested = began.elapsed().as_secs_f64();
     }

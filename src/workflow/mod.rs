@@ -1,8 +1,8 @@
 //! Tasks in memory: simulate, optimise, refine, verify.
 //!
-//! - `integrate`, `optimise`: a simulation, and a control problem with its result, the `optimum`; an `attempt` begins at one start and has one of the
-//!   `solves` or more, until the objective is confirmed, of the `program` of one motion or several; `error`: errors of tasks; `remark`: warnings and
-//!   notes.
+//! - `integrate`, `optimise`: a simulation, and a control problem with its result, the `optimum`, by `stages` where contacts call for them; an
+//!   `attempt` begins at one start and has one of the `solves` or more, until the objective is confirmed, of the `program` of one motion or
+//!   several; `error`: errors of tasks; `remark`: warnings and notes.
 //! - `grids`: on finer grids where an accuracy needs them or a verification fails, by `accuracy`; `tolerance`: steps as short as a tolerance needs.
 //! - `resimulate`: verification of an optimum; `hold_check`: its end; `infeasible`: explanation of a problem without one.
 //! - `effects`, `reasons`: terms of a model, what they couple, and their reasons; `memory`: a refusal of more than the machine has.
@@ -34,6 +34,7 @@ pub mod regulator;
 pub(crate) mod remark;
 pub(crate) mod resimulate;
 mod solves;
+mod stages;
 pub(crate) mod tolerance;
 pub(crate) mod tracking;
 pub(crate) mod warnings;

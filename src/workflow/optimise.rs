@@ -10,12 +10,13 @@ use crate::math::Signal;
 use crate::model::{Model, Role, System};
 use crate::nlp::Status;
 use crate::stop;
-use crate::workflow::attempt::{Together, attempt};
+use crate::workflow::attempt::Together;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::Iterate;
 use crate::workflow::optimum::{Budget, Optimum, Restarted, Shortest, SolveLimits};
 use crate::workflow::remark::phase;
 use crate::workflow::solves::{put_after, put_before};
+use crate::workflow::stages::attempt_by_stages;
 use std::ops::ControlFlow;
 
 /// Solves a control problem, from an `earlier` solution where one is given; from its guess, and from others where that leads nowhere;
@@ -45,7 +46,7 @@ pub(super) fn optimise_task(
     observer: &mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
 ) -> Result<Together, WorkflowError> {
     let budget = Budget::new(allowed);
-    let mut found = attempt(task, allowed, observer)?;
+    let mut found = attempt_by_stages(task, allowed, observer)?;
     if !is_unreached(&found.optima[0].solution) {
         return Ok(found);
     }
@@ -62,7 +63,7 @@ pub(super) fn optimise_task(
         let each = task.motions.iter().zip(&found.optima);
         let each = each.map(|(motion, first)| displaced(motion.control, first));
         let controls: Vec<Control> = each.collect();
-        let second = attempt(&task.with(&controls), budget.left_of_limits(), observer);
+        let second = attempt_by_stages(&task.with(&controls), budget.left_of_limits(), observer);
         let Ok(mut second) = second else {
             return Ok(found);
         };
@@ -262,7 +263,7 @@ impl SecondStarts<'_, '_> {
             true => (self.observer)(iterate),
             false => ControlFlow::Continue(()),
         };
-        let found = attempt(&motion.into(), limits, observer).ok();
+        let found = attempt_by_stages(&motion.into(), limits, observer).ok();
         found.map(|mut found| found.optima.remove(0))
     }
 }

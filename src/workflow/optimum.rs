@@ -146,6 +146,8 @@ pub struct Optimum {
     pub tested: f64,
     /// End of the first start, where another one found the optimum.
     pub restarted: Option<Restarted>,
+    /// Number of stages with softer contacts that led to it.
+    pub stages: usize,
     /// The shortest motion, where none was found in the given time.
     pub shortest: Shortest,
     /// Half a period of the slowest vibration about rest in ms, where no motion was found and that is known.

@@ -88,6 +88,15 @@ fn open(model: &Model, optimal: &Solution, tolerance: f64) -> Option<Cause> {
     open.map(|(constraint, gap)| Cause::Open { constraint, gap })
 }
 
+/// Simulations that verify a solution.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Verification {
+    /// With the steps of the intervals, and with finer ones, which tell their error.
+    Full,
+    /// With the steps of the intervals alone.
+    OwnSteps,
+}
+
 /// Simulates optimal voltages; what the solver of a `tolerance` leaves of its equations is no deviation.
 pub(crate) fn resimulate(
     model: &Model,
@@ -95,6 +104,7 @@ pub(crate) fn resimulate(
     start: &Start,
     optimal: &Solution,
     tolerance: f64,
+    verification: Verification,
 ) -> Resimulation {
     let path_length = Distance::path_length(model, optimal, 1);
     let repeat = |steps: usize| Repeat::from_solution(model, control, start, optimal, steps);
@@ -107,7 +117,7 @@ pub(crate) fn resimulate(
             .or_else(|| own.cause(model, optimal, SAME.0.max(SAME.1 * tolerance))),
         ..Resimulation::default()
     };
-    if own.failure.is_some() || out.cause.is_some() {
+    if own.failure.is_some() || out.cause.is_some() || verification == Verification::OwnSteps {
         return out;
     }
     let least = match own.discrete.report.halved > 0 {

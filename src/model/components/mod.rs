@@ -13,6 +13,7 @@ mod tendon;
 pub use component::{Component, Other};
 pub use contact::{
     Contact, ContactElasticLaw, ContactSide, ContactSphere, ElasticSolid, Restitution, SLIP_SPEED,
+    SoftContact,
 };
 pub use load::{BlockLoad, Faces, Load, LoadPlace};
 pub use muscle_constants::capacitance;
