@@ -599,6 +599,19 @@ Combined: TypeAlias = "Literal['sum', 'worst']"
 """The objective of several motions."""
 
 
+class ContactForceLimit(TypedDict):
+    """Limits of the normal force of a contact in the middle of every interval, as in its column: `min`, `max` or both."""
+
+    contact: Text
+    """Name of the contact."""
+
+    max: NotRequired[Quantity]
+    """Upper bound, SI unit N."""
+
+    min: NotRequired[Quantity]
+    """Lower bound, SI unit N."""
+
+
 ControlSolver: TypeAlias = "Literal['auto', 'stages', 'mumps']"
 """Solver of the linear systems of a control problem."""
 
@@ -835,6 +848,19 @@ class Free(TypedDict):
     """Lower bound, in the unit of the constant."""
 
 
+class GapLimit(TypedDict):
+    """Limits of the gap of a contact, negative where both sides overlap: `min`, `max` or both. With a `min` of zero they do not touch."""
+
+    contact: Text
+    """Name of the contact."""
+
+    max: NotRequired[Quantity]
+    """Upper bound, SI unit m."""
+
+    min: NotRequired[Quantity]
+    """Lower bound, SI unit m."""
+
+
 Goal: TypeAlias = "GoalWord | RestGoal"
 """`"free"`, `"periodic"`, or a state at the end, at rest."""
 
@@ -993,11 +1019,17 @@ class Limit(TypedDict):
     clearance: NotRequired[ClearanceLimit]
     """Limits of the distance of a marker from a plane that is fixed to a body or the ground."""
 
+    contact_force: NotRequired[ContactForceLimit]
+    """Limits of the normal force of a contact."""
+
     current: NotRequired[CurrentLimit]
     """Limits of the current of sources."""
 
     electric_field: NotRequired[ElectricFieldLimit]
     """Breakdown field of muscles or elastic blocks."""
+
+    gap: NotRequired[GapLimit]
+    """Limits of the gap of a contact."""
 
     joint_angle: NotRequired[JointAngleLimit]
     """Limits of a joint coordinate."""

@@ -77,6 +77,7 @@ impl Limits {
                 };
                 self.add_in(Quantity::of(what), largest.unwrap_or(typical), bounds, name);
             }
+            What::ContactForce(_) => self.add_in(Quantity::of(what), unit, bounds, name),
             What::Stretch(_) => {
                 let squares = [min.max(0.0), max].map(|bound| bound * bound);
                 self.add(Quantity::of(what), squares, name);

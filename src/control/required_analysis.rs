@@ -192,6 +192,7 @@ impl<'a> Named<'a> {
                 }
                 PartKind::Spring => self.of_points(&components.springs[part].points()),
                 PartKind::Tendon => self.of_points(&components.tendons[part].through),
+                PartKind::Contact => self.of_points(&components.contacts[part].points()),
                 PartKind::Source | PartKind::Block => {}
             }
         }

@@ -161,13 +161,6 @@ impl ContactLaw {
         chain(ramp(1.0 + a * rate, self.release), [rate, a, 0.0, 0.0])
     }
 
-    /// Energy as a function of the form q with three derivatives.
-    fn energy(&self, q: f64) -> [f64; 4] {
-        let height = self.surface.height(q);
-        let overlap = [0, 1, 2, 3].map(|k| if k == 0 { self.distance } else { 0.0 } - height[k]);
-        chain(self.of_overlap(overlap[0]), overlap)
-    }
-
     /// Slope ∂H/∂q of the height, elastic force f and its growth φ as jets to second order of q and its rate α.
     pub(super) fn force<const M: usize>(&self, q: &Jet<M, 2>, alpha: &Jet<M, 2>) -> [Jet<M, 2>; 3] {
         let [h, h1, h2, h3] = self.surface.height(q.value);
@@ -204,6 +197,16 @@ pub(super) fn vector<const M: usize>(p: &SVector<f64, M>, i: usize) -> Vector3<f
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactElasticity(pub ContactLaw);
 
+impl ContactElasticity {
+    /// The energy as a function of the form q with three derivatives.
+    fn of(&self, q: f64) -> [f64; 4] {
+        let [height, slopes @ ..] = self.0.surface.height(q);
+        let [first, second, third] = slopes.map(|slope| -slope);
+        let overlap = [self.0.distance - height, first, second, third];
+        chain(self.0.of_overlap(overlap[0]), overlap)
+    }
+}
+
 /// A function of the form of a contact, at a place and along rates of it.
 #[derive(Clone, Copy, Debug)]
 pub struct OfForm {
@@ -217,8 +220,11 @@ pub struct OfForm {
 }
 
 impl OfForm {
-    fn new<const M: usize>(law: &ContactLaw, p: &SVector<f64, M>, w: &SVector<f64, M>) -> Self {
-        let surface = law.surface;
+    fn new<const M: usize>(
+        surface: Surface,
+        of: impl Fn(f64) -> [f64; 4],
+        [p, w]: [&SVector<f64, M>; 2],
+    ) -> Self {
         let [at, along] = [p, w].map(|x| [0, 1].map(|i| vector(x, i)));
         let gradient = surface.gradient(at);
         Self {
@@ -226,7 +232,7 @@ impl OfForm {
             gradient,
             bend: surface.bend(along),
             rate: gradient[0].dot(&along[0]) + gradient[1].dot(&along[1]),
-            of: law.energy(surface.form(at)),
+            of: of(surface.form(at)),
         }
     }
 }
@@ -302,11 +308,53 @@ impl ContactDamping {
     }
 }
 
-/// Implements the energy for numbers of vectors.
-macro_rules! elasticity {
-    ($($arguments:literal)*) => {
-        $(
-            impl Energy<$arguments> for ContactElasticity {
+/// Gap of a contact in mm, negative where both sides overlap; arguments as of its elasticity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactGap(pub ContactLaw);
+
+impl ContactGap {
+    /// The gap as a function of the form q with three derivatives.
+    fn of(&self, q: f64) -> [f64; 4] {
+        let [height, slopes @ ..] = self.0.surface.height(q);
+        let [first, second, third] = slopes;
+        [height - self.0.distance, first, second, third]
+    }
+}
+
+/// Normal force of a contact in a unit; arguments: midpoints of r, and n of a plane of a body, then their rates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactForce {
+    /// The law.
+    pub law: ContactLaw,
+    /// Unit in N.
+    pub unit: f64,
+}
+
+impl ContactForce {
+    /// The force of `K` − 1 arguments, with the normal of a plane that does not turn behind them.
+    fn local<const K: usize, const M: usize>(&self, p: &SVector<f64, M>) -> OfDotProducts<K> {
+        let mut vectors = std::array::from_fn(|i| vector(p, i));
+        let products: [&[[usize; 2]]; 2] = match self.law.surface {
+            Surface::Plane(normal) => {
+                vectors[K - 1] = normal;
+                [&[[0, 2]], &[[1, 2]]]
+            }
+            Surface::Sphere => [&[[0, 0]], &[[0, 1]]],
+            Surface::MovingPlane => [&[[0, 1]], &[[2, 1], [0, 3]]],
+        };
+        let mut out = OfDotProducts::new(vectors);
+        let [q, alpha] = out.arguments(products);
+        let [_, force, growth] = self.law.force(&q, &alpha);
+        out.add_function(products, (force * growth).scaled(self.unit.recip()));
+        out
+    }
+}
+
+/// Implements functions of the form for numbers of vectors.
+macro_rules! functions_of_form {
+    ($($formula:ident, $($arguments:literal)*;)*) => {
+        $($(
+            impl Energy<$arguments> for $formula {
                 type Local<const ORDER: usize> = OfForm;
 
                 fn at<const ORDER: usize>(
@@ -314,14 +362,43 @@ macro_rules! elasticity {
                     p: &SVector<f64, $arguments>,
                     w: &SVector<f64, $arguments>,
                 ) -> OfForm {
-                    OfForm::new(&self.0, p, w)
+                    OfForm::new(self.0.surface, |q| self.of(q), [p, w])
+                }
+            }
+        )*)*
+    };
+}
+
+functions_of_form! {
+    ContactElasticity, 3 6;
+    ContactGap, 3 6;
+}
+
+/// Implements the force for numbers of vectors, each of which is read twice: its midpoint and rate.
+macro_rules! normal_force {
+    ($($vectors:literal of $arguments:literal as $local:ty;)*) => {
+        $(
+            impl Energy<$arguments> for ContactForce {
+                type Local<const ORDER: usize> = $local;
+
+                const READINGS: usize = 2;
+
+                fn at<const ORDER: usize>(
+                    &self,
+                    p: &SVector<f64, $arguments>,
+                    _: &SVector<f64, $arguments>,
+                ) -> $local {
+                    self.local(p)
                 }
             }
         )*
     };
 }
 
-elasticity! { 3 6 }
+normal_force! {
+    1 of 6 as OfDotProducts<3>;
+    2 of 12 as OfDotProducts<5>;
+}
 
 /// Implements a virtual work for numbers of vectors, each of which is read three times: its variation, midpoint and rate.
 macro_rules! virtual_work {

@@ -1,4 +1,4 @@
-//! Virtual works as functions of dot products of vectors, with their derivatives by the vectors.
+//! Virtual works and other functions of dot products of vectors, with their derivatives by the vectors.
 
 use crate::math::{Derivatives, Jet, Local};
 use nalgebra::{Matrix3, SVector, Vector3};
@@ -39,9 +39,7 @@ impl<const K: usize> OfDotProducts<K> {
         products: [Product<'_>; D],
         factors: impl FnOnce([Jet<D, 2>; D]) -> [Jet<D, 2>; V],
     ) {
-        let at = SVector::from(products.map(|product| self.product(product)));
-        let none = SVector::zeros();
-        let factors = factors(std::array::from_fn(|a| Jet::argument(a, &at, &none)));
+        let factors = factors(self.arguments(products));
         let mut sum = Jet::<D, 2>::constant(0.0);
         for (product, factor) in virtuals.into_iter().zip(factors) {
             sum = sum + factor * self.product(product);
@@ -49,6 +47,22 @@ impl<const K: usize> OfDotProducts<K> {
             let turned = self.turned(products, &factor.gradient);
             self.add_outer(product, &turned, true);
         }
+        self.add_function(products, sum);
+    }
+
+    /// Products as arguments of a function.
+    pub(super) fn arguments<const D: usize>(&self, products: [Product<'_>; D]) -> [Jet<D, 2>; D] {
+        let at = SVector::from(products.map(|product| self.product(product)));
+        let none = SVector::zeros();
+        std::array::from_fn(|a| Jet::argument(a, &at, &none))
+    }
+
+    /// Adds a function of products.
+    pub(super) fn add_function<const D: usize>(
+        &mut self,
+        products: [Product<'_>; D],
+        sum: Jet<D, 2>,
+    ) {
         self.value += sum.value;
         for (a, product) in products.into_iter().enumerate() {
             self.add_slope(product, sum.gradient[a]);

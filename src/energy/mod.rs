@@ -25,7 +25,9 @@ pub use charge::{
 };
 pub use coefficient::Coefficient;
 pub use constraint::{Coincidence, Orthogonality};
-pub use contact::{ContactDamping, ContactElasticity, ContactLaw, OfForm, Surface, Touch};
+pub use contact::{
+    ContactDamping, ContactElasticity, ContactForce, ContactGap, ContactLaw, OfForm, Surface, Touch,
+};
 pub use dot_products::OfDotProducts;
 pub use elastic_law::{ElasticConstants, ElasticLaw, Elasticity, NeoHooke};
 pub use friction::{ContactFriction, FrictionLocal, StickingFriction};

@@ -10,6 +10,7 @@ mod clearance;
 mod closed_form;
 mod codesign;
 mod confirmed;
+mod contacts;
 mod controller;
 mod creep;
 mod delays;

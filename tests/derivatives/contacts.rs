@@ -7,7 +7,8 @@ use crate::naive_formulas::{Formula, along, polarised, squared_length, three};
 use nalgebra::{SVector, Vector3};
 use num_dual::DualNum;
 use proboscis::energy::{
-    ContactDamping, ContactElasticity, ContactFriction, ContactLaw, StickingFriction, Surface,
+    ContactDamping, ContactElasticity, ContactForce, ContactFriction, ContactGap, ContactLaw,
+    StickingFriction, Surface,
 };
 use proboscis::math::Jet;
 
@@ -89,6 +90,7 @@ macro_rules! formulas {
 formulas! {
     ContactElasticity: 3, 1;
     ContactElasticity: 6, 1;
+    ContactGap: 3, 1;
     ContactDamping: 9, 3;
     ContactDamping: 18, 3;
     ContactFriction: 9, 3;
@@ -99,6 +101,23 @@ formulas! {
     StickingFriction: 72, 3;
 }
 
+/// Forces are only measured, to second order.
+macro_rules! measured_formulas {
+    ($($arguments:literal)*) => {
+        $(impl Formula<$arguments> for ContactForce {
+            const HAS_RATES: bool = false;
+
+            fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; $arguments]) -> D {
+                let x = vectors(p, 2);
+                let [force, growth, _] = normal(&self.law, [&x[1], &x[0], &x[1]], 1);
+                force * growth / self.unit
+            }
+        })*
+    };
+}
+
+measured_formulas! { 6 12 }
+
 /// A formula of vectors by reading and number.
 trait WrittenAgain {
     fn written_again<D: DualNum<f64> + Copy>(&self, x: &[Vec<[D; 3]>]) -> D;
@@ -107,6 +126,12 @@ trait WrittenAgain {
 impl WrittenAgain for ContactElasticity {
     fn written_again<D: DualNum<f64> + Copy>(&self, x: &[Vec<[D; 3]>]) -> D {
         elastic(&self.0, height(self.0.surface, x[0][0], second(&x[0], 1)))
+    }
+}
+
+impl WrittenAgain for ContactGap {
+    fn written_again<D: DualNum<f64> + Copy>(&self, x: &[Vec<[D; 3]>]) -> D {
+        height(self.0.surface, x[0][0], second(&x[0], 1)) - self.0.distance
     }
 }
 
@@ -225,11 +250,27 @@ fn normal_forces_have_the_derivatives_of_naive_formulas() {
         for of in laws(surface) {
             law::<_, 3>("contact", &ContactElasticity(of), 0.4, 1.1);
             law::<_, 9>("contact damping", &ContactDamping(of), 0.4, 1.1);
+            // Heights over planes are polynomials of a degree of their own.
+            if surface == Surface::Sphere {
+                law::<_, 3>("contact gap", &ContactGap(of), 0.4, 1.1);
+            }
+            law::<_, 6>(
+                "contact force",
+                &ContactForce { law: of, unit: 0.3 },
+                0.4,
+                1.1,
+            );
         }
     }
     for of in laws(Surface::MovingPlane) {
         law::<_, 6>("contact", &ContactElasticity(of), 0.4, 1.1);
         law::<_, 18>("contact damping", &ContactDamping(of), 0.4, 1.1);
+        law::<_, 12>(
+            "contact force",
+            &ContactForce { law: of, unit: 0.3 },
+            0.4,
+            1.1,
+        );
     }
 }
 

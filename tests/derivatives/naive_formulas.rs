@@ -15,6 +15,8 @@ use proboscis::energy::{
 pub(crate) trait Formula<const M: usize>: Energy<M> {
     /// Number of its arguments that are vectors.
     const VECTORS: usize = M / 3;
+    /// False of an energy that is only measured, of which nobody asks for rates.
+    const HAS_RATES: bool = true;
 
     fn naive<D: DualNum<f64> + Copy>(&self, p: &[D; M]) -> D;
 }

@@ -190,6 +190,7 @@ named_parts! {
     marker: Marker,
     spring: Spring,
     tendon: Tendon,
+    contact: Contact,
 }
 
 read_objects! {

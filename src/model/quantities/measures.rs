@@ -2,8 +2,8 @@
 
 use crate::element::FieldPoint;
 use crate::energy::{
-    Angle, AngleStep, Energy, Law, Multiple, OutsideBox, PeakExcess, PositionComponent, Projection,
-    ProjectionStep, SquaredDistance, law,
+    Angle, AngleStep, ContactForce, ContactGap, Energy, Law, Multiple, OutsideBox, PeakExcess,
+    PositionComponent, Projection, ProjectionStep, SquaredDistance, law,
 };
 use crate::functional::{
     Curved, Element, ElementField, Group, Kernel, LawElement, Measure, Stencil, Term, VectorArg,
@@ -128,6 +128,7 @@ impl<'k> Reading<'k, '_> {
             What::Place { .. } | What::Region { .. } | What::Clearance { .. } | What::Speed(_) => {
                 self.of_marker()
             }
+            What::Gap(contact) | What::ContactForce(contact) => self.of_contact(contact),
             What::Direction { body, axis, along } => {
                 let body = self.known.presolved.carrier(Some(body));
                 let direction = MaterialVector::direction(body, &axis, self.known.reference);
@@ -222,6 +223,26 @@ impl<'k> Reading<'k, '_> {
     fn parameter(&self, parameter: usize) -> Option<usize> {
         let mut parameters = self.known.variables.range(Role::Parameter);
         parameters.nth(parameter)
+    }
+
+    /// Gap or normal force of a contact.
+    fn of_contact(&mut self, contact: usize) -> Made {
+        let contact = &self.known.system.components.contacts[contact];
+        let mut terms = self.known.no_terms(self.vectors);
+        let reading = contact.reading(&mut terms)?;
+        let (law, unit) = (reading.law, self.quantity.unit);
+        let force = ContactForce { law, unit };
+        let both = [Stencil::Mid, Stencil::Rate];
+        match (&self.quantity.what, &reading.normal_vectors()[..]) {
+            (What::Gap(_), &[r]) => self.instant::<_, 3, 1>(ContactGap(law), [r]),
+            (What::Gap(_), &[r, n]) => self.instant::<_, 6, 2>(ContactGap(law), [r, n]),
+            (_, &[r]) => self.formula::<_, 6, 2, 0>(force, both.map(|at| at.of(r)), []),
+            (_, &[r, n]) => {
+                let [[a, b], [c, d]] = both.map(|at| [at.of(r), at.of(n)]);
+                self.formula::<_, 12, 4, 0>(force, [a, b, c, d], [])
+            }
+            _ => None,
+        }
     }
 
     /// Angle or displacement of a joint, or its step in an interval.

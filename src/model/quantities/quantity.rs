@@ -141,7 +141,7 @@ impl Quantity {
             (What::Speed(_), _) => (value.sqrt() * self.unit, "m/s"),
             (What::Current(_), _) => (1e3 * value * self.unit, "mA"),
             (What::Power(_), _) => (size, "W"),
-            (What::Tension(_), _) => (size, "N"),
+            (What::Tension(_) | What::ContactForce(_), _) => (size, "N"),
             (What::Voltage(_), _) => (per_time, "kV/s"),
             (What::MeanCharge(_), Of::Jump) => {
                 (1e3 * value * self.unit / self.h.unwrap_or(1.0), "mA")

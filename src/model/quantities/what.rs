@@ -72,6 +72,10 @@ pub enum What {
         /// The plane.
         plane: Plane,
     },
+    /// Gap in mm of a contact, negative where both sides overlap.
+    Gap(usize),
+    /// Normal force in N of a contact in the middle of an interval.
+    ContactForce(usize),
     /// a·b of a direction a fixed to a body and a direction b.
     Direction {
         /// Body index.
@@ -147,6 +151,8 @@ pub enum PartKind {
     Spring,
     /// A tendon.
     Tendon,
+    /// A contact.
+    Contact,
     /// A source.
     Source,
     /// A marker.
@@ -169,6 +175,7 @@ impl PartKind {
             Self::Muscle => all(&system.muscles, |one| &one.name),
             Self::Spring => all(&components.springs, |one| &one.name),
             Self::Tendon => all(&components.tendons, |one| &one.name),
+            Self::Contact => all(&components.contacts, |one| &one.name),
             Self::Source => all(&system.sources(), |one| &one.name),
             Self::Marker => all(&system.markers, |one| &one.name),
             Self::Body => all(&system.bodies, |one| &one.name),
@@ -221,6 +228,7 @@ impl What {
                     .iter_mut()
                     .for_each(|body| visit(PartKind::Body, body));
             }
+            Self::Gap(contact) | Self::ContactForce(contact) => visit(PartKind::Contact, contact),
             Self::Direction { body, .. } => visit(PartKind::Body, body),
             Self::PeakVoltage(_) => {}
             Self::Amount { muscles, .. } => {
@@ -306,6 +314,8 @@ impl What {
             Self::Speed(_) => (Middle, "speed", ""),
             Self::Region { .. } => (Instant, "region", ""),
             Self::Clearance { .. } => (Instant, "clearance", "mm"),
+            Self::Gap(_) => (Instant, "gap", "mm"),
+            Self::ContactForce(_) => (Middle, "normal force", ""),
             Self::Direction { .. } => (Instant, "direction", ""),
             Self::PeakVoltage(_) => (Middle, "peak voltage", "kV"),
             Self::PeakExcess { .. } => (Middle, "peak voltage", ""),

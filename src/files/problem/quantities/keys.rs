@@ -10,8 +10,8 @@ use crate::files::problem::quantities::joint::{
     ReactionForceLimitSpec, ReactionTorqueLimitSpec, TrackJointSpec, TrackJointsSpec,
 };
 use crate::files::problem::quantities::marker::{
-    self, ClearanceCostSpec, ClearanceLimitSpec, FinalMarkerSpec, MarkerLimitSpec,
-    MarkerSpeedCostSpec, MarkerSpeedLimitSpec, TrackMarkerSpec,
+    self, ClearanceCostSpec, ClearanceLimitSpec, ContactForceLimitSpec, FinalMarkerSpec,
+    GapLimitSpec, MarkerLimitSpec, MarkerSpeedCostSpec, MarkerSpeedLimitSpec, TrackMarkerSpec,
 };
 use crate::files::problem::quantities::muscle::{
     self, ElectricFieldLimitSpec, FieldCostSpec, MuscleMassLimitSpec, MuscleVolumeLimitSpec,
@@ -85,6 +85,10 @@ one_of! {
         muscle_mass: MuscleMassLimitSpec;
         /// Limits of the distance of a marker from a plane that is fixed to a body or the ground.
         clearance: ClearanceLimitSpec;
+        /// Limits of the gap of a contact.
+        gap: GapLimitSpec;
+        /// Limits of the normal force of a contact.
+        contact_force: ContactForceLimitSpec;
     }
     beside {
         /// Part of the duration, above 0 and at most 1, at which alone the limit holds: at the instant nearest to it, or in the interval before

@@ -1,4 +1,4 @@
-//! Places, speeds, regions and clearances of markers in limits, costs and recordings.
+//! Places, speeds, regions and clearances of markers in limits, costs and recordings; gaps and forces of contacts in limits.
 
 use crate::control::problem::{CostFunction, Limit};
 use crate::files::json::objects::read_objects;
@@ -11,7 +11,7 @@ use crate::files::problem::quantities::entry::{
 use crate::files::problem::quantities::joint::written_direction;
 use crate::files::scene::point::{CornersSpec, PartialPoint, Point, vector};
 use crate::files::signal::{SignalSpec, signal};
-use crate::files::units::quantity::{Length, Quantity as Written, Velocity};
+use crate::files::units::quantity::{Force, Length, Quantity as Written, Velocity};
 use crate::model::{Quantity, Region, What};
 
 read_objects! {
@@ -74,6 +74,24 @@ limits! {
     } within Written<Length>, ", SI unit m" => |of, at| {
         let bounds = bounds([&of.min, &of.max], at)?;
         limits_of([clearance(&of.marker, &of.from, at)?], bounds)
+    };
+
+    /// Limits of the gap of a contact, negative where both sides overlap: `min`, `max` or both. With a `min` of zero they do not touch.
+    GapLimitSpec {
+        /// Name of the contact.
+        pub contact: String,
+    } within Written<Length>, ", SI unit m" => |of, at| {
+        let contact = at.key("contact").contact(&of.contact)?;
+        limits_of([What::Gap(contact)], bounds([&of.min, &of.max], at)?)
+    };
+
+    /// Limits of the normal force of a contact in the middle of every interval, as in its column: `min`, `max` or both.
+    ContactForceLimitSpec {
+        /// Name of the contact.
+        pub contact: String,
+    } within Written<Force>, ", SI unit N" => |of, at| {
+        let contact = at.key("contact").contact(&of.contact)?;
+        limits_of([What::ContactForce(contact)], bounds([&of.min, &of.max], at)?)
     };
 }
 
