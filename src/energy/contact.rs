@@ -161,10 +161,17 @@ impl ContactLaw {
         chain(ramp(1.0 + a * rate, self.release), [rate, a, 0.0, 0.0])
     }
 
+    /// Gap as a function of the form q with three derivatives.
+    fn gap(&self, q: f64) -> [f64; 4] {
+        let mut gap = self.surface.height(q);
+        gap[0] -= self.distance;
+        gap
+    }
+
     /// Slope ∂H/∂q of the height, elastic force f and its growth φ as jets to second order of q and its rate α.
     pub(super) fn force<const M: usize>(&self, q: &Jet<M, 2>, alpha: &Jet<M, 2>) -> [Jet<M, 2>; 3] {
-        let [h, h1, h2, h3] = self.surface.height(q.value);
-        let overlap = [self.distance - h, -h1, -h2, -h3];
+        let gap @ [_, h1, h2, h3] = self.gap(q.value);
+        let overlap = gap.map(|x| -x);
         let [_, f, f1, f2] = self.of_overlap(overlap[0]);
         let slope = q.map([h1, h2, h3, 0.0]);
         let force = q.map(chain([f, f1, f2, 0.0], overlap));
@@ -174,9 +181,9 @@ impl ContactLaw {
 
     /// Overlap and normal force at r and n and their rates.
     pub fn touch(&self, [at, rates]: [[Vector3<f64>; 2]; 2]) -> Touch {
-        let [height, slope, ..] = self.surface.height(self.surface.form(at));
+        let [gap, slope, ..] = self.gap(self.surface.form(at));
         let [by_r, by_n] = self.surface.gradient(at);
-        let overlap = self.distance - height;
+        let overlap = -gap;
         let rate = -slope * (by_r.dot(&rates[0]) + by_n.dot(&rates[1]));
         Touch {
             overlap,
@@ -200,9 +207,7 @@ pub struct ContactElasticity(pub ContactLaw);
 impl ContactElasticity {
     /// The energy as a function of the form q with three derivatives.
     fn of(&self, q: f64) -> [f64; 4] {
-        let [height, slopes @ ..] = self.0.surface.height(q);
-        let [first, second, third] = slopes.map(|slope| -slope);
-        let overlap = [self.0.distance - height, first, second, third];
+        let overlap = self.0.gap(q).map(|x| -x);
         chain(self.0.of_overlap(overlap[0]), overlap)
     }
 }
@@ -313,11 +318,8 @@ impl ContactDamping {
 pub struct ContactGap(pub ContactLaw);
 
 impl ContactGap {
-    /// The gap as a function of the form q with three derivatives.
     fn of(&self, q: f64) -> [f64; 4] {
-        let [height, slopes @ ..] = self.0.surface.height(q);
-        let [first, second, third] = slopes;
-        [height - self.0.distance, first, second, third]
+        self.0.gap(q)
     }
 }
 

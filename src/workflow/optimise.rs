@@ -252,13 +252,7 @@ impl SecondStarts<'_, '_> {
             earlier,
             ..self.motion
         };
-        let left = self.budget.left_of_limits();
-        let most = left.iterations;
-        let most = most.unwrap_or(self.motion.control.solver.max_iterations);
-        let limits = SolveLimits {
-            iterations: Some(iterations.min(most)),
-            ..left
-        };
+        let limits = self.budget.left_within(iterations, self.motion.control);
         let observer = &mut |iterate: &Iterate<'_>| match is_seen {
             true => (self.observer)(iterate),
             false => ControlFlow::Continue(()),

@@ -62,6 +62,16 @@ impl Budget {
         }
     }
 
+    /// The limits of one solve of a problem with these seconds and a number of iterations at most.
+    pub(crate) fn left_within(&self, iterations: usize, control: &Control) -> SolveLimits {
+        let left = self.left_of_limits();
+        let most = left.iterations.unwrap_or(control.solver.max_iterations);
+        SolveLimits {
+            iterations: Some(iterations.min(most)),
+            ..left
+        }
+    }
+
     /// Returns the reason why nothing more may be begun, if there is one.
     pub(crate) fn stopped(&self) -> Option<Status> {
         if stop::requested() {

@@ -9,7 +9,7 @@ use crate::control::Transcription;
 use crate::control::problem::{Control, ControlTask, MotionTask};
 use crate::dynamics::{DiscreteTrajectory, least_gaps};
 use crate::ipopt::SolverResult;
-use crate::model::components::{Contact, SoftContact};
+use crate::model::components::{Component, Contact, SoftContact};
 use crate::model::{Model, System};
 use crate::workflow::attempt::{Together, attempt};
 use crate::workflow::error::WorkflowError;
@@ -58,7 +58,6 @@ pub(super) fn attempt_by_stages(
     let mut way = Way {
         task,
         first,
-        allowed,
         budget: Budget::new(allowed),
         observer,
         reached: None,
@@ -73,7 +72,6 @@ struct Way<'a, 'o> {
     task: &'a ControlTask<'a>,
     /// The contacts of each motion at t = 1; none of a motion that needs no softer ones.
     first: Vec<Vec<SoftContact>>,
-    allowed: SolveLimits,
     budget: Budget,
     observer: &'o mut dyn FnMut(&Iterate<'_>) -> ControlFlow<()>,
     /// The last stage that was solved.
@@ -139,20 +137,17 @@ impl Way<'_, '_> {
             motions: motions.collect(),
             ..*self.task
         };
-        let most = task.motions[0].control.solver.max_iterations;
-        let limits = SolveLimits {
-            iterations: Some(self.allowed.iterations.unwrap_or(most).min(iterations)),
-            ..self.budget.left_of_limits()
-        };
+        let limits = self.budget.left_within(iterations, task.motions[0].control);
         let verification = match t > 0.0 {
             true => Verification::OwnSteps,
             false => Verification::Full,
         };
         let mut found = attempt(&task, limits, verification, self.observer)?;
-        for (optimum, before) in found.optima.iter_mut().zip(&self.before) {
-            put_before(&mut optimum.solution, before);
-        }
-        for optimum in &mut found.optima {
+        for (number, optimum) in found.optima.iter_mut().enumerate() {
+            let before = self.before.get(number);
+            before
+                .iter()
+                .for_each(|before| put_before(&mut optimum.solution, before));
             optimum.stages = self.solved;
         }
         let results = found.optima.iter().map(|one| one.solution.clone());
@@ -202,7 +197,7 @@ fn of_motion(model: &Model, task: &MotionTask<'_>, guess: &DiscreteTrajectory) -
         let gap = gaps.iter().find(|(name, _)| *name == contact.name);
         let gap = gap.map_or(0.0, |(_, gap)| gap.max(0.0));
         let inverse = |body: Option<usize>| body.map_or(0.0, |b| system.bodies[b].mass.recip());
-        let inverses: f64 = contact.bodies().into_iter().map(inverse).sum();
+        let inverses: f64 = contact.points().iter().map(|end| inverse(end.body)).sum();
         // A touch of two masses lasts half a period.
         let stiffness = (PI / touch).powi(2) / inverses;
         contact.soft(WIDTH * gap, stiffness, slip_speed, STICK * length)

@@ -11,13 +11,14 @@ use serde_json::{Value, json};
 use std::ops::ControlFlow;
 use std::path::Path;
 
-fn read(problem: &Value) -> Result<Loaded, String> {
+pub(crate) fn read(problem: &Value) -> Result<Loaded, String> {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("problems/phases.json");
     let read = read_problem_text(&path, &problem.to_string(), &[]);
     read.map_err(|error| error.to_string())
 }
 
-fn solved(problem: &Value) -> MotionsResult {
+/// The motions of a problem, which are solved.
+pub(crate) fn solved(problem: &Value) -> MotionsResult {
     let loaded = read(problem).unwrap();
     let task = loaded.task.motions(&loaded.system).unwrap();
     let go_on = &mut |_: usize, _: &Iterate<'_>| ControlFlow::Continue(());

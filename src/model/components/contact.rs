@@ -153,11 +153,6 @@ const NO_WIDTH: f64 = 0.01;
 const SMALL: f64 = 0.01;
 
 impl Contact {
-    /// The bodies of both sides; `None` for the ground.
-    pub fn bodies(&self) -> [Option<usize>; 2] {
-        self.ends().map(|end| end.body)
-    }
-
     /// The constants of a width in mm, a stiffness in N/mm, a speed of slip in mm/ms and an elastic displacement in mm, where they are softer
     /// than those of the contact.
     pub fn soft(&self, width: f64, stiffness: f64, slip_speed: f64, stick: f64) -> SoftContact {
@@ -238,6 +233,14 @@ impl Contact {
         match &self.side {
             ContactSide::Plane { at, .. } => at,
             ContactSide::Sphere(other) => &other.centre,
+        }
+    }
+
+    /// Its spheres.
+    fn spheres(&self) -> Vec<ContactSphere> {
+        match self.side {
+            ContactSide::Plane { .. } => vec![self.sphere],
+            ContactSide::Sphere(other) => vec![self.sphere, other],
         }
     }
 
@@ -326,8 +329,7 @@ impl Contact {
             return terms.without(FRICTION, "no contact that moves names a friction");
         };
         let (friction, vectors) = self.friction_law(reading, coefficient, terms);
-        let bristles = terms.bristles.get(terms.contacts.len()).cloned();
-        let bristles = bristles.filter(|coordinates| !coordinates.is_empty());
+        let bristles = terms.bristles.get(name).cloned();
         let call = [FRICTION, "friction of"];
         match (self.stick.zip(bristles), vectors.len()) {
             (Some((displacement, coordinates)), count) => {
@@ -358,15 +360,11 @@ impl Contact {
         coefficient: f64,
         terms: &mut Terms<'_>,
     ) -> (ContactFriction, Vec<usize>) {
-        let (mut vectors, mut spheres) = (vec![reading.span], vec![self.sphere]);
-        match (&self.side, reading.normal) {
-            (ContactSide::Sphere(other), _) => spheres.push(*other),
-            (ContactSide::Plane { at, normal }, Some(turning)) => {
-                let tangents = triad(normal).map(|tangent| terms.direction(at, &tangent));
-                vectors.extend(tangents.map(|tangent| terms.vector(tangent)));
-                vectors.push(turning);
-            }
-            (ContactSide::Plane { .. }, None) => {}
+        let (mut vectors, mut spheres) = (vec![reading.span], self.spheres());
+        if let (ContactSide::Plane { at, normal }, Some(turning)) = (&self.side, reading.normal) {
+            let tangents = triad(normal).map(|tangent| terms.direction(at, &tangent));
+            vectors.extend(tangents.map(|tangent| terms.vector(tangent)));
+            vectors.push(turning);
         }
         let mut radii = [0.0; 2];
         spheres.retain(|one| one.radius > 0.0 && terms.carrier(&one.centre).is_some());
@@ -460,27 +458,24 @@ impl Component for Contact {
 
     fn outlines(&self) -> Vec<Vec<Attachment>> {
         let mut lines = Vec::new();
-        let mut spheres = vec![self.sphere];
-        match &self.side {
-            ContactSide::Sphere(other) => spheres.push(*other),
-            ContactSide::Plane { at, normal } => {
-                let along = self.sphere.centre.at - at.at;
-                let foot = along - normal * normal.dot(&along);
-                let half = (foot.norm() + 2.0 * self.sphere.radius).max(0.5 * along.norm());
-                let corner = |[a, b]: [f64; 2]| {
-                    let [first, second] = triad(normal);
-                    first * (a * half) + second * (b * half)
-                };
-                let corners = [
-                    [1.0, 1.0],
-                    [-1.0, 1.0],
-                    [-1.0, -1.0],
-                    [1.0, -1.0],
-                    [1.0, 1.0],
-                ];
-                lines.push((*at, corners.map(corner).to_vec()));
-            }
+        if let ContactSide::Plane { at, normal } = &self.side {
+            let along = self.sphere.centre.at - at.at;
+            let foot = along - normal * normal.dot(&along);
+            let half = (foot.norm() + 2.0 * self.sphere.radius).max(0.5 * along.norm());
+            let corner = |[a, b]: [f64; 2]| {
+                let [first, second] = triad(normal);
+                first * (a * half) + second * (b * half)
+            };
+            let corners = [
+                [1.0, 1.0],
+                [-1.0, 1.0],
+                [-1.0, -1.0],
+                [1.0, -1.0],
+                [1.0, 1.0],
+            ];
+            lines.push((*at, corners.map(corner).to_vec()));
         }
+        let spheres = self.spheres();
         lines.extend(spheres.iter().map(|one| (one.centre, circles(one.radius))));
         let placed = |(point, line): (Attachment, Vec<Vector3<f64>>)| {
             let at = |step: Vector3<f64>| Attachment {

@@ -114,8 +114,8 @@ pub(crate) struct Internals {
     of_tree: Vec<Option<usize>>,
     /// Number of the coordinates before them.
     first: usize,
-    /// Coordinates of the elastic displacement of each contact that acts in a motion; none of one that does not stick.
-    pub(crate) bristles: Vec<Range<usize>>,
+    /// Coordinates of the elastic displacement of each contact that sticks in a motion, by its name.
+    pub(crate) bristles: BTreeMap<String, Range<usize>>,
     /// First in the list of each block and element with Maxwell branches.
     pub(crate) of_elements: BTreeMap<(usize, usize), usize>,
     pub(crate) list: Vec<Internal>,
@@ -167,16 +167,16 @@ impl Internals {
         let circuits = blocks.circuits.iter();
         list.extend(circuits.map(|of| Internal::of_charge(&of.name, of.source)));
         let first = of_bodies + of_nodes;
-        let mut bristles = Vec::new();
+        let mut bristles = BTreeMap::new();
         let contacts = scene.components.contacts.iter();
-        let acting = contacts.filter(|one| {
+        let sticking = contacts.filter(|one| {
             let [a, b] = one.ends().map(|end| presolved.carrier(end.body));
-            analysis.of_motion && a != b
+            analysis.of_motion && a != b && one.bristles() > 0
         });
-        for contact in acting {
+        for contact in sticking {
             let components = 0..contact.bristles();
             let before = first + list.len();
-            bristles.push(before..before + components.len());
+            bristles.insert(contact.name.clone(), before..before + components.len());
             list.extend(components.map(|k| Internal::of_bristle(&contact.name, k)));
         }
         let mut of_elements = BTreeMap::new();

@@ -22,6 +22,7 @@ use crate::model::layout::variables::Variables;
 use crate::model::system::bodies::Attachment;
 use crate::model::system::maxwell::Response;
 use std::any::Any;
+use std::collections::BTreeMap;
 use std::fmt;
 use std::ops::Range;
 use std::sync::Arc;
@@ -57,8 +58,8 @@ pub struct Terms<'a> {
     of_motion: bool,
     response: Response,
     sought: Sought,
-    /// Coordinates of the elastic displacement of each contact, in the order in which they are added; none of one that does not stick.
-    pub(super) bristles: Vec<Range<usize>>,
+    /// Coordinates of the elastic displacement of each contact that sticks, by its name.
+    pub(super) bristles: BTreeMap<String, Range<usize>>,
     /// Readings of the contacts that were added.
     pub(super) contacts: Vec<ContactReading>,
     collected: Vec<Collected>,
@@ -150,7 +151,7 @@ impl<'a> Terms<'a> {
             of_motion,
             response,
             sought,
-            bristles: Vec::new(),
+            bristles: BTreeMap::new(),
             contacts: Vec::new(),
             collected: Vec::new(),
             present: Vec::new(),
