@@ -5,7 +5,7 @@ use crate::control::problem::{Control, Hold};
 use crate::math::{shortest, significant};
 use crate::model::Model;
 use crate::nlp::Status;
-use crate::workflow::optimum::{Optimum, Restarted};
+use crate::workflow::optimum::{Optimum, Restarted, Stages};
 use crate::workflow::reasons::Cause;
 use crate::workflow::tracking::{FinalValue, Tracked};
 
@@ -92,13 +92,26 @@ pub(crate) fn restarted(restarted: Restarted) -> String {
 
 /// Describes the stages of contacts that led to an optimum.
 pub(crate) fn stages(optimum: &Optimum) -> Option<String> {
-    let stages = optimum.stages;
-    let plural = if stages == 1 { "" } else { "s" };
-    (stages > 0).then(|| {
-        format!(
-            "solved after {stages} stage{plural} with softer contacts, each from the one before"
-        )
-    })
+    let Stages {
+        solved,
+        is_simulated,
+        is_softer,
+    } = optimum.stages;
+    let plural = if solved == 1 { "" } else { "s" };
+    let from = match is_simulated {
+        true => ", the first from a simulation that came near the goal",
+        false => "",
+    };
+    match is_softer {
+        true => Some(format!(
+            "stopped in a stage with softer contacts than those of the scene, after {solved} that were solved"
+        )),
+        false => (solved > 0).then(|| {
+            format!(
+                "solved after {solved} stage{plural} with softer contacts, each from the one before{from}"
+            )
+        }),
+    }
 }
 
 /// Lists the values of a motion at its end or at waypoints for which costs ask; of many the farthest of each unit in turn.

@@ -12,7 +12,9 @@ use crate::workflow::accuracy::Accuracy;
 use crate::workflow::error::WorkflowError;
 use crate::workflow::hold_check;
 use crate::workflow::motion::{Iterate, solved};
-use crate::workflow::optimum::{Optimum, Shortest, SolveLimits, WholeProgram, active, violations};
+use crate::workflow::optimum::{
+    Optimum, Shortest, SolveLimits, Stages, WholeProgram, active, violations,
+};
 use crate::workflow::program::{
     Prepared, multipliers_of, prepare_together, program_motions, resolve_each, with_found,
 };
@@ -62,10 +64,12 @@ impl Together {
         }
     }
 
-    /// Takes over what became of the solutions that the motions of a grid before started from.
+    /// Takes over what became of the solutions that the motions of a grid before started from, and the stages that led there.
     pub(crate) fn carry(&mut self, before: &Self) {
         for (new, old) in self.optima.iter_mut().zip(&before.optima) {
             new.carried = old.carried;
+            new.stages.solved += old.stages.solved;
+            new.stages.is_simulated |= old.stages.is_simulated;
         }
     }
 }
@@ -208,7 +212,7 @@ impl Optimum {
             resimulation: None,
             tested: 0.0,
             restarted: None,
-            stages: 0,
+            stages: Stages::default(),
             shortest: Shortest::Unknown,
             half_period: None,
             stopped: None,

@@ -14,6 +14,7 @@ use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::{Iterate, discrete_trajectory};
 use crate::workflow::optimise::{is_infeasible, is_unreached, optimise_task};
 use crate::workflow::optimum::{Budget, Optimum, SolveLimits};
+use crate::workflow::reasons::Cause;
 use std::ops::ControlFlow;
 
 /// Deviation of the motion under the optimal voltages that is confirmed where no accuracy is set, as a part of the path length.
@@ -205,7 +206,7 @@ impl GridSolves<'_, '_> {
         Some(found)
     }
 
-    /// Solves on finer grids, from the motions before, then from the guesses; the reason where that is not done.
+    /// Solves on finer grids, from the motions before, then, unless their grids are merely coarse, from the guesses; the reason where that is not done.
     fn refine(&mut self, before: &Together, intervals: &[usize]) -> Result<Together, &'static str> {
         let grown = before.optima.iter().zip(intervals);
         let grown = grown.map(|(one, &n)| n as f64 / one.motion.intervals() as f64);
@@ -217,8 +218,11 @@ impl GridSolves<'_, '_> {
             return Err("a finer grid is too large");
         }
         let mut next: Option<Together> = None;
+        let is_coarse = |one: &Optimum| matches!(one.cause(), None | Some(Cause::Coarse { .. }));
         for earlier in [Some(before), None] {
-            let is_enough = |next: &Together| !self.are_given || next.is_solved();
+            let is_enough = |next: &Together| {
+                !self.are_given || next.is_solved() || next.optima.iter().all(is_coarse)
+            };
             if self.budget.is_over() || next.as_ref().is_some_and(is_enough) {
                 break;
             }

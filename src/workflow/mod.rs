@@ -9,6 +9,7 @@
 //! - `warnings`: steps that do not resolve a motion, muscles outside the domain of their material.
 //! - `regulator`: feedback along an optimum; `receding`: a controller that plans anew; `control_loop`, `closed_loop`: a simulation under feedback.
 //! - `tracking`: deviations of a motion from the references of its objective.
+//! - `search`: a start for motions that touch, by simulations.
 //! - `motion`: conversion between unknowns and a trajectory; `parallel_map`: pieces of work in several threads.
 
 pub mod accuracy;
@@ -33,6 +34,7 @@ pub mod receding;
 pub mod regulator;
 pub(crate) mod remark;
 pub(crate) mod resimulate;
+mod search;
 mod solves;
 mod stages;
 pub(crate) mod tolerance;
@@ -48,7 +50,8 @@ pub use integrate::{Simulated, grid, integrate, integrate_on, integrate_to};
 pub use motion::{Iterate, IterateMotions, solved, trajectory};
 pub use optimise::optimise;
 pub use optimum::{
-    Active, Optimum, Restarted, Shortest, SolveLimits, Violation, WholeProgram, active, violations,
+    Active, Optimum, Restarted, Shortest, SolveLimits, Stages, Violation, WholeProgram, active,
+    violations,
 };
 pub use program::Counted;
 pub use reasons::{Absent, Cause, absent};

@@ -124,6 +124,17 @@ impl WholeProgram {
     }
 }
 
+/// The way to an optimum through contacts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Stages {
+    /// Number of stages with softer contacts that were solved before it.
+    pub solved: usize,
+    /// True if the first of them began with a motion that simulations found.
+    pub is_simulated: bool,
+    /// True if it is of such a stage itself, in which the solve was stopped.
+    pub is_softer: bool,
+}
+
 /// A control problem and how its solve ended.
 #[derive(Debug)]
 pub struct Optimum {
@@ -156,8 +167,8 @@ pub struct Optimum {
     pub tested: f64,
     /// End of the first start, where another one found the optimum.
     pub restarted: Option<Restarted>,
-    /// Number of stages with softer contacts that led to it.
-    pub stages: usize,
+    /// The stages with softer contacts that led to it.
+    pub stages: Stages,
     /// The shortest motion, where none was found in the given time.
     pub shortest: Shortest,
     /// Half a period of the slowest vibration about rest in ms, where no motion was found and that is known.

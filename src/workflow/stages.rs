@@ -3,10 +3,12 @@
 //!
 //! A contact that is open along the whole guess has neither a force nor a derivative, so that the solver does not see it; a stiff or rough one
 //! bends the equations within a step of the solver. Each constant q of a contact is `q₀ᵗ q¹⁻ᵗ` between that of the first stage, at t = 1, and
-//! that of the scene, at t = 0. Where the first stage is not solved the widths grow; a later one that is not solved halves the way to it.
+//! that of the scene, at t = 0. Where the first stage is not solved the widths grow; a later one that is not solved halves the way to it; and
+//! where both lead nowhere simulations look for a start. An earlier solution, or a guess of the user's, shows the solver which contacts close: it
+//! begins at t = 0, and at a greater t where that is not solved.
 
 use crate::control::Transcription;
-use crate::control::problem::{Control, ControlTask, MotionTask};
+use crate::control::problem::{Control, ControlTask, Guess, MotionTask};
 use crate::dynamics::{DiscreteTrajectory, least_gaps};
 use crate::ipopt::SolverResult;
 use crate::model::components::{Component, Contact, SoftContact};
@@ -14,11 +16,12 @@ use crate::model::{Model, System};
 use crate::workflow::attempt::{Together, attempt};
 use crate::workflow::error::WorkflowError;
 use crate::workflow::motion::Iterate;
-use crate::workflow::optimum::{Budget, Optimum, SolveLimits};
+use crate::workflow::optimum::{Budget, Optimum, SolveLimits, Stages};
 use crate::workflow::program::{Prepared, prepare_together, program_motions, resolve_each};
 use crate::workflow::reasons::Cause;
 use crate::workflow::remark::phase;
 use crate::workflow::resimulate::Verification;
+use crate::workflow::search::simulated_start;
 use crate::workflow::solves::put_before;
 use std::f64::consts::PI;
 use std::ops::ControlFlow;
@@ -42,7 +45,7 @@ const FARTHEST: f64 = 2.0;
 const ITERATIONS: usize = 150;
 const TOLERANCE: f64 = 1e-4;
 
-/// Solves a task from one start as [`attempt`], by stages where contacts call for them and no earlier solution is given.
+/// Solves a task from one start as [`attempt`], by stages where contacts call for them.
 ///
 /// # Errors
 /// As of [`attempt`].
@@ -57,12 +60,14 @@ pub(super) fn attempt_by_stages(
     }
     let mut way = Way {
         task,
+        simulated: None,
         first,
         budget: Budget::new(allowed),
         observer,
         reached: None,
         before: Vec::new(),
         solved: 0,
+        stopped: None,
     };
     way.follow()
 }
@@ -70,6 +75,8 @@ pub(super) fn attempt_by_stages(
 /// The way from the first contacts to those of the scene.
 struct Way<'a, 'o> {
     task: &'a ControlTask<'a>,
+    /// The problem of a single motion with a guess that simulations found.
+    simulated: Option<Control>,
     /// The contacts of each motion at t = 1; none of a motion that needs no softer ones.
     first: Vec<Vec<SoftContact>>,
     budget: Budget,
@@ -80,19 +87,59 @@ struct Way<'a, 'o> {
     before: Vec<SolverResult>,
     /// Number of stages that were solved.
     solved: usize,
+    /// What a solve found that was stopped.
+    stopped: Option<Together>,
 }
 
 impl Way<'_, '_> {
-    /// Solves stage after stage; where they lead nowhere, and in the end, with the contacts of the scene.
+    /// Solves by stages from the guess of the problem; from one that simulations find where these lead nowhere; and at once where those do, too.
     fn follow(&mut self) -> Result<Together, WorkflowError> {
-        let (mut at, mut next, mut step) = (None, 1.0, STEP);
+        if let Some(found) = self.stages() {
+            return Ok(found);
+        }
+        if self.stopped.is_none() {
+            self.simulated = simulated_start(self.task, &self.budget)?;
+        }
+        if self.simulated.is_some() {
+            (self.reached, self.solved) = (None, 0);
+            if let Some(found) = self.stages() {
+                return Ok(found);
+            }
+        }
+        match self.stopped.take() {
+            Some(stopped) => Ok(stopped),
+            None => self.solve(0.0, usize::MAX),
+        }
+    }
+
+    /// Solves stage after stage; the last one, unless they lead nowhere.
+    fn stages(&mut self) -> Option<Together> {
+        let is_shown = |motion: &MotionTask<'_>| {
+            motion.earlier.is_some() || motion.control.guess != Guess::Interpolate
+        };
+        let first = match self.task.motions.iter().all(is_shown) {
+            true => 0.0,
+            false => 1.0,
+        };
+        let (mut at, mut next, mut step) = (None, first, STEP);
         while !self.budget.is_over() {
             phase("solving with softer contacts");
             let found = self.solve(next, ITERATIONS).ok();
-            let found = found.filter(|found| found.optima.iter().all(is_motion));
-            tracing::info!(t = next, is_solved = found.is_some(), "stage");
+            let is_solved = |found: &Together| found.optima.iter().all(is_motion);
+            tracing::info!(
+                t = next,
+                is_solved = found.as_ref().is_some_and(is_solved),
+                "stage"
+            );
+            let found = match found {
+                Some(found) if is_solved(&found) => Some(found),
+                stopped => {
+                    self.stopped = stopped.filter(|_| self.budget.is_over());
+                    None
+                }
+            };
             match (found, at) {
-                (Some(found), _) if next == 0.0 => return Ok(found),
+                (Some(found), _) if next == 0.0 => return Some(found),
                 (Some(found), before) => {
                     self.reached = Some(found);
                     self.solved += 1;
@@ -101,14 +148,14 @@ impl Way<'_, '_> {
                     next = f64::max(next - step, 0.0);
                 }
                 (None, None) if next < FARTHEST => next += FARTHER,
-                (None, Some(at)) if step > LEAST => {
-                    step *= 0.5;
-                    next = f64::max(at - step, 0.0);
+                (None, Some(at)) if at - next > LEAST => {
+                    step = 0.5 * (at - next);
+                    next = at - step;
                 }
                 (None, _) => break,
             }
         }
-        self.solve(0.0, usize::MAX)
+        None
     }
 
     /// Solves with the contacts at t, from the last stage that was solved.
@@ -116,7 +163,8 @@ impl Way<'_, '_> {
         let each = self.task.motions.iter().zip(&self.first);
         let problems: Vec<(System, Control)> = each
             .map(|(motion, first)| {
-                let (mut system, mut control) = (motion.system.clone(), motion.control.clone());
+                let control = self.simulated.as_ref().unwrap_or(motion.control);
+                let (mut system, mut control) = (motion.system.clone(), control.clone());
                 if t > 0.0 {
                     let contacts = system.components.contacts.iter_mut();
                     let pairs = contacts.zip(first);
@@ -130,7 +178,10 @@ impl Way<'_, '_> {
         let motions = each.map(|(k, (motion, (system, control)))| MotionTask {
             system,
             control,
-            earlier: self.reached.as_ref().map(|found| &found.optima[k].motion),
+            earlier: match &self.reached {
+                Some(found) => Some(&found.optima[k].motion),
+                None => motion.earlier,
+            },
             ..*motion
         });
         let task = ControlTask {
@@ -148,7 +199,11 @@ impl Way<'_, '_> {
             before
                 .iter()
                 .for_each(|before| put_before(&mut optimum.solution, before));
-            optimum.stages = self.solved;
+            optimum.stages = Stages {
+                solved: self.solved,
+                is_simulated: self.simulated.is_some(),
+                is_softer: t > 0.0,
+            };
         }
         let results = found.optima.iter().map(|one| one.solution.clone());
         self.before = results.collect();
@@ -162,11 +217,10 @@ fn is_motion(optimum: &Optimum) -> bool {
     optimum.meets_equations() && is_motion
 }
 
-/// The contacts of each motion at t = 1; none where those of the scene are no stiffer, or an earlier solution is given.
+/// The contacts of each motion at t = 1; none where those of the scene are no stiffer.
 fn first_contacts(task: &ControlTask<'_>) -> Result<Vec<Vec<SoftContact>>, WorkflowError> {
     let touches = |motion: &MotionTask<'_>| !motion.system.components.contacts.is_empty();
-    let is_new = task.motions.iter().all(|motion| motion.earlier.is_none());
-    if !is_new || !task.motions.iter().any(touches) {
+    if !task.motions.iter().any(touches) {
         return Ok(Vec::new());
     }
     let resolved = resolve_each(task)?;

@@ -2,8 +2,11 @@
 //! integrated once more.
 
 use crate::phases::{read, solved};
+use proboscis::control::problem::ControlTask;
 use proboscis::tasks::MotionsResult;
+use proboscis::workflow::{Iterate, SolveLimits, Stages, optimise};
 use serde_json::{Value, json};
+use std::ops::ControlFlow;
 
 /// Masses in kg, radii and gap in mm, time in s, intervals, stiffness in N/mm.
 const MASSES: [f64; 2] = [0.2, 0.1];
@@ -142,7 +145,7 @@ fn a_contact_that_is_open_along_the_guess_is_found_at_every_scale() {
     let mut objectives = Vec::new();
     for (unit, way) in [(1.0, 25.0), (1.0, 60.0), (0.1, 60.0)] {
         let found = solved(&carts(unit, way));
-        assert!(found.list[0].optimum.stages > 0);
+        assert!(found.list[0].optimum.stages.solved > 0);
         let end = pushed(&forces(&found), unit) / unit;
         let apart = (end - way).abs() / way;
         assert!(apart < 0.015, "{unit}: {end} for {way}");
@@ -185,5 +188,109 @@ fn a_problem_without_contacts_has_no_stages() {
     problem["scene"]["contacts"] = json!([]);
     problem["control"]["waypoints"] = json!([{ "part": 1, "joint_angles": { "driven": "20 mm" } }]);
     let found = solved(&problem);
-    assert_eq!(found.list[0].optimum.stages, 0);
+    assert_eq!(found.list[0].optimum.stages, Stages::default());
+}
+
+/// An earlier solution shows which contacts close: the scene's own are tried first, and are enough nearby.
+#[test]
+fn an_earlier_solution_needs_no_stages() {
+    let found = solved(&carts(1.0, 60.0));
+    let loaded = read(&carts(1.0, 61.0)).unwrap();
+    let task: ControlTask<'_> = loaded.task.motions(&loaded.system).unwrap();
+    let go_on = &mut |_: &Iterate<'_>| ControlFlow::Continue(());
+    let earlier = &found.list[0].optimum.motion;
+    let (limits, control) = (SolveLimits::default(), task.motions[0].control);
+    let next = optimise(&loaded.system, control, Some(earlier), limits, go_on).unwrap();
+    assert!(next.is_solved() && next.stages == Stages::default());
+    let objective = solved(&carts(1.0, 61.0)).list[0].optimum.solution.objective;
+    let apart = next.solution.objective / objective - 1.0;
+    assert!(apart.abs() < 1e-6, "{apart}");
+}
+
+/// Height of the middle of the ball above that of the arm on which it rests, in mm.
+const HEIGHT: f64 = 12.75;
+const GRAVITY: f64 = 9.81e-3;
+
+/// An arm on a hinge between two muscles throws a ball that rests in a notch at its end to a place in the air.
+fn thrown() -> Value {
+    let mm = |x: f64| format!("{x} mm");
+    let muscle = |name: &str, side: f64| {
+        json!({
+            "name": name, "material": "silicone", "cross_section": ["10 mm", "10 mm"], "layer_thickness": "50 um",
+            "from": { "body": "ground", "at": ["20 mm", mm(45.0 * side), 0] },
+            "to": { "body": "arm", "at": ["20 mm", mm(5.0 * side), 0] },
+        })
+    };
+    let edge = |name: &str, x: f64| {
+        json!({
+            "name": name, "sphere": { "body": "arm", "at": [mm(x), "3 mm", 0], "radius": "4 mm" },
+            "other": { "body": "ball", "at": ["50 mm", mm(HEIGHT), 0], "radius": "8 mm" },
+            "stiffness": "1 N/mm", "restitution": { "coefficient": 0.5, "speed": "0.2 m/s" }, "smoothing": "0.5 mm",
+            "friction": 0.201, "slip_speed": "20 mm/s",
+        })
+    };
+    let silicone = json!({
+        "density": "1000 kg/m^3", "shear_modulus": "100 kPa", "relative_permittivity": 3.0, "viscosity": "1000 Pa s",
+    });
+    json!({
+        "scene": {
+            "name": "throw",
+            "materials": { "silicone": silicone },
+            "bodies": [
+                { "name": "arm", "mass": "20 g", "box": { "size": ["60 mm", "6 mm", "10 mm"] }, "position": ["30 mm", 0, 0] },
+                { "name": "ball", "mass": "8.97 g", "sphere": { "radius": "8 mm" }, "position": ["50 mm", mm(HEIGHT), 0] },
+            ],
+            "joints": [
+                { "name": "hinge", "revolute": { "axis": [0, 0, 1] }, "parent": "ground", "child": "arm", "at": [0, 0, 0] },
+                {
+                    "name": "plane", "planar": { "normal": [0, 0, 1] }, "parent": "ground", "child": "ball",
+                    "at": ["50 mm", mm(HEIGHT), 0],
+                },
+            ],
+            "muscles": [muscle("up", 1.0), muscle("down", -1.0)],
+            "contacts": [edge("back", 43.0), edge("front", 57.0)],
+            "markers": [{ "name": "ball", "body": "ball", "at": ["50 mm", mm(HEIGHT), 0] }],
+            "gravity": [0, "-9.81 m/s^2", 0],
+        },
+        "control": {
+            "duration": "218.8 ms",
+            "intervals": 30,
+            "start": { "joint_angles": {} },
+            "goal": "free",
+            "waypoints": [{ "part": 1, "markers": { "ball": ["14.27 mm", "63.26 mm", null] } }],
+            "voltage_bounds": ["0 V", "3 kV"],
+            "objective": { "effort": 1.0, "rate": 0.0005 },
+        },
+    })
+}
+
+/// Steps of a solver do not open a contact that is closed along the whole guess; simulations do. Once in the air the ball falls freely, and its
+/// parabola leads to the place.
+#[test]
+fn a_ball_is_thrown_to_a_place_in_the_air() {
+    let found = solved(&thrown());
+    let optimum = &found.list[0].optimum;
+    assert!(optimum.stages.is_simulated, "{:?}", optimum.stages);
+    let ball: Vec<_> = optimum
+        .motion
+        .poses
+        .iter()
+        .map(|poses| poses[1].centre)
+        .collect();
+    let last = ball.len() - 1;
+    let h = optimum.motion.times[1];
+    let falls = |k: &usize| {
+        let bend = ball[k + 1] - ball[*k] * 2.0 + ball[k - 1];
+        bend.x.abs() < 1e-6 && (bend.y / (h * h) + GRAVITY).abs() < 1e-6
+    };
+    let free = (1..last).rev().take_while(falls).count();
+    assert!(free >= last / 5, "{free}");
+    let (k, after) = (last - free, (free as f64 + 0.5) * h);
+    // From a middle between two instants, whose velocity the method has.
+    let velocity = (ball[k] - ball[k - 1]) / h;
+    let middle = (ball[k] + ball[k - 1]) / 2.0 + nalgebra::Vector3::y() * GRAVITY * h * h / 8.0;
+    let mut end = middle + velocity * after;
+    end.y -= 0.5 * GRAVITY * after.powi(2);
+    let place = nalgebra::Vector3::new(14.27, 63.26, 0.0);
+    assert!((end - place).norm() < 1e-4, "{end} after {after}");
 }
