@@ -11,6 +11,7 @@ use crate::report::skins::{Paint, Skin, draw_skin, shown};
 use crate::report::solids::{Prism, slice};
 use crate::report::style::{self, Colour};
 use crate::report::view::View;
+use crate::report::viewpoint::upright;
 use nalgebra::Vector3;
 use std::collections::HashSet;
 
@@ -284,7 +285,7 @@ pub(super) fn ground_plate(system: &System) -> Vec<Vector3<f64>> {
     let muscles = system.muscles.iter().flat_map(|m| [m.from, m.to]);
     let components = system.components.iter().flat_map(|c| c.points());
     let joints = system.joints.iter().filter(|j| j.parent.is_none());
-    let held: Vec<_> = muscles
+    let mut held: Vec<_> = muscles
         .chain(components)
         .filter(|point| point.body.is_none())
         .map(|point| point.at)
@@ -293,10 +294,14 @@ pub(super) fn ground_plate(system: &System) -> Vec<Vector3<f64>> {
     if held.is_empty() {
         return vec![];
     }
+    let upright = upright(system);
+    held.iter_mut()
+        .for_each(|point| *point = upright.inverse() * *point);
     let centre = held.iter().sum::<Vector3<f64>>() / held.len() as f64;
     let lowest = held.iter().map(|p| p.y).fold(f64::INFINITY, f64::min);
     let spread = held.iter().map(|p| (p - centre).xz().norm());
     let radius = 1.6 * spread.fold(0.0, f64::max) + 8.0;
-    let middle = Vector3::new(centre.x, lowest, centre.z);
-    circle(middle, Vector3::x(), Vector3::z(), radius)
+    let middle = upright * Vector3::new(centre.x, lowest, centre.z);
+    let [across, along] = [Vector3::x(), Vector3::z()].map(|axis| upright * axis);
+    circle(middle, across, along, radius)
 }

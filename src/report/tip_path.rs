@@ -30,7 +30,7 @@ fn plane<'a>(points: impl Iterator<Item = &'a Vector3<f64>>) -> [usize; 2] {
 pub fn svg(run: &Run<'_>) -> String {
     let motions = run.motions();
     let all = motions.iter().flat_map(|(_, one)| &one.marks);
-    let plane = run.figures.view.plane();
+    let plane = run.figures.view.plane(run.system);
     let plane = plane.unwrap_or_else(|| self::plane(all.flatten()));
     plot(run, plane).svg(run.origin)
 }

@@ -1,6 +1,6 @@
 //! Viewpoint of figures in space.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Rotation3, Vector3};
 
 use crate::dynamics::trajectory::Trajectory;
 use crate::model::system::System;
@@ -8,7 +8,8 @@ use crate::report::body::extent_points;
 use crate::report::skins::{Skins, shown};
 use crate::report::view::View;
 
-/// Position of the viewer, who sees x to the right along the z and y axes, z to the left along the x axis and downwards along the y axis.
+/// Position of the viewer, who sees x to the right along the z and y axes, z to the left along the x axis and downwards along the y axis; of a
+/// system whose gravity acts along another axis than y all of it is turned, so that it stands.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "cli", derive(clap::ValueEnum))]
 pub enum Viewpoint {
@@ -39,24 +40,44 @@ impl Viewpoint {
 
     /// The view of a motion; of a single instant, of the way there from the reference configuration.
     pub fn view(self, system: &System, trajectory: &Trajectory, skins: &Skins) -> View {
-        match self {
+        self.upright(system, || least(system, trajectory, skins))
+    }
+
+    /// The axes to the right and upwards of a figure in a plane of the ground frame, where one is asked for.
+    pub fn plane(self, system: &System) -> Option<[usize; 2]> {
+        let is_of_plane = matches!(self, Self::Front | Self::Side | Self::Top);
+        let view = is_of_plane.then(|| self.upright(system, Vector3::z))?;
+        Some([view.right, view.up].map(|axis| axis.iamax()))
+    }
+
+    fn upright(self, system: &System, least: impl FnOnce() -> Vector3<f64>) -> View {
+        let upright = upright(system);
+        let view = match self {
             Self::Oblique => View::oblique(),
             Self::Front => View::toward(Vector3::z()),
             Self::Side => View::toward(Vector3::x()),
             Self::Top => View::toward(Vector3::y()),
-            Self::Auto => View::toward(least(system, trajectory, skins)),
+            Self::Auto => View::toward(towards_reader(upright.inverse() * least())),
+        };
+        View {
+            right: upright * view.right,
+            up: upright * view.up,
+            toward: upright * view.toward,
+            ..view
         }
     }
+}
 
-    /// The axes to the right and upwards of a figure in a plane of the ground frame, where one is asked for.
-    pub fn plane(self) -> Option<[usize; 2]> {
-        match self {
-            Self::Front => Some([0, 1]),
-            Self::Side => Some([2, 1]),
-            Self::Top => Some([0, 2]),
-            Self::Oblique | Self::Auto => None,
-        }
-    }
+/// Part of gravity along an axis of the ground frame from which on the axis is vertical.
+const VERTICAL: f64 = 0.9;
+
+/// The rotation of y to the axis that points upwards: that against gravity, or y where there is none or none along an axis.
+pub(super) fn upright(system: &System) -> Rotation3<f64> {
+    let up = -system.gravity.unwrap_or_default();
+    let axis = Vector3::ith(up.iamax(), 1.0) * up[up.iamax()].signum();
+    let is_vertical = up.dot(&axis) > VERTICAL * up.norm();
+    let between = Rotation3::rotation_between(&Vector3::y(), &axis);
+    between.filter(|_| is_vertical).unwrap_or_default()
 }
 
 /// The direction in which motion and shape together are smallest: an eigenvector of the sum of two covariances, both of trace one, of each
@@ -92,9 +113,12 @@ fn least(system: &System, trajectory: &Trajectory, skins: &Skins) -> Vector3<f64
         covariance(&all.chain(surfaces.flatten().copied()).collect::<Vec<_>>())
     });
     let all = (unit(motion.sum()) + unit(shape.sum())).symmetric_eigen();
-    let direction = all.eigenvectors.column(all.eigenvalues.imin()).into_owned();
+    all.eigenvectors.column(all.eigenvalues.imin()).into_owned()
+}
+
+/// A direction or its opposite: from the front, from the right, or from below, where x is to the right and z upwards.
+fn towards_reader(direction: Vector3<f64>) -> Vector3<f64> {
     let main = direction.iamax();
-    // From the front, from the right, or from below, where x is to the right and z upwards.
     let sign = if main == 1 { -1.0 } else { 1.0 };
     direction * (sign * direction[main].signum())
 }

@@ -1,4 +1,4 @@
-// A parallel view of the scene with y upwards: turned, moved and enlarged by pointer and keys.
+// A parallel view of the scene as it stands: turned, moved and enlarged by pointer and keys.
 
 /** Part of the picture that is left free around the motion. */
 const MARGIN = 0.06;
@@ -6,9 +6,12 @@ const MARGIN = 0.06;
 const ZOOM = [0.2, 60];
 
 class Camera {
-  /** A camera that frames `points` (x, y, z, x, …) as seen from the direction `toward`; `changed()` asks for a picture. */
-  constructor(points, toward, changed) {
-    Object.assign(this, { points, auto: toward, changed, aspect: 1 });
+  /**
+   * A camera that frames `points` (x, y, z, x, …) as seen from the direction `toward`; `changed()` asks for a picture. Directions are in a frame
+   * with y upwards, whose axes in the ground frame `upright` lists.
+   */
+  constructor(points, { toward, upright }, changed) {
+    Object.assign(this, { points, auto: toward, upright, changed, aspect: 1 });
     this.three = new THREE.OrthographicCamera(-1, 1, 1, -1, 0.1, 10);
     this.look("auto");
   }
@@ -24,7 +27,8 @@ class Camera {
 
   axes() {
     const [sa, ca, se, ce] = [Math.sin(this.azimuth), Math.cos(this.azimuth), Math.sin(this.elevation), Math.cos(this.elevation)];
-    return { right: [ca, 0, -sa], up: [-sa * se, ce, -ca * se], toward: [sa * ce, se, ca * ce] };
+    const stands = (v) => [0, 1, 2].map((i) => v.reduce((sum, x, a) => sum + x * this.upright[3 * a + i], 0));
+    return { right: stands([ca, 0, -sa]), up: stands([-sa * se, ce, -ca * se]), toward: stands([sa * ce, se, ca * ce]) };
   }
 
   /** Extent of all points along right, up and toward. */

@@ -29,7 +29,7 @@ class Scene {
       compared: marker.compared && numbers(marker.compared), followed: marker.followed && numbers(marker.followed),
     }));
     const points = this.extent();
-    this.camera = new Camera(points, data.toward, () => {
+    this.camera = new Camera(points, data, () => {
       this.gauge?.draw();
       this.draw();
     });

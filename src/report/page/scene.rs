@@ -8,6 +8,7 @@ use crate::report::moving_lines::{MovingLine, arrows, ties};
 use crate::report::skins::{Skin, shown};
 use crate::report::solids::Prism;
 use crate::report::style::Colour;
+use crate::report::viewpoint::upright;
 use crate::report::{Run, solids, style};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -39,12 +40,14 @@ pub(super) fn scene(run: &Run<'_>) -> Value {
     let mut parts = stage.bodies();
     parts.extend(stage.muscles());
     parts.extend(run.skins.list.iter().map(|skin| stage.block(skin)));
+    let upright = upright(run.system);
     json!({
         "name": run.name,
         "span": run.branch.is_none().then(|| [times[0] / 1e3, times[times.len() - 1] / 1e3]),
         "branch": run.branch.map(|branch| json!({ "fractions": numbers(branch.fractions.iter().copied()), "shown": branch.shown })),
         "times": numbers(instants.iter().map(|&k| times[k] / 1e3)),
-        "toward": run.view().toward.as_slice(),
+        "toward": (upright.inverse() * run.view().toward).as_slice(),
+        "upright": upright.matrix().as_slice(),
         "voltage": run.voltage_scale() / 1e3,
         "parts": parts,
         "ties": stage.lines(),
