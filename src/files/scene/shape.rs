@@ -123,7 +123,6 @@ pub(crate) fn shape(
                 centre: on((from + to) * 0.5),
                 radius: place.key("radius").positive(&capsule.radius)?,
                 axes: [(to - from) * 0.5, Vector3::zeros(), Vector3::zeros()],
-                ..ContactShape::default()
             })
         };
         "box" cuboid |place, cuboid| ShapeKind::Shape(ContactShape {
