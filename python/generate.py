@@ -26,6 +26,7 @@ PARTS = {
     "solids": ("Solid", "solid"),
     "springs": ("Spring", "spring"),
     "tendons": ("Tendon", "tendon"),
+    "shapes": ("ContactShape", "shape"),
     "contacts": ("Contact", "contact"),
     "loads": ("Load", "load"),
     "markers": ("Marker", "marker"),

@@ -120,7 +120,7 @@ pub use kinematics::Pose;
 pub use math::{Fault, Jet, Signal};
 pub use mesh::Mesh;
 pub use mesh::grid::Grid;
-pub use model::components::{Contact, Load, Spring, Tendon};
+pub use model::components::{Contact, ContactShape, Load, Spring, Tendon};
 pub use model::system::{
     Attachment, Body, ElasticLaw, Electrode, Glue, Joint, JointKind, Marker, Material, Muscle,
     Potential, Shape, Solid, Support,
@@ -138,10 +138,11 @@ pub use workflow::{Remark, Severity, Tracked, TrackingError};
 pub mod prelude {
     pub use crate::units::*;
     pub use crate::{
-        Attachment, Body, Carrier, Component, Contact, Control, ElasticLaw, Equilibrium, Error,
-        GROUND, Grid, Handle, Identification, Input, Integrator, Joint, JointKind, Load, Marker,
-        Material, Motion, Muscle, Optimum, Orientation, Parameter, Part, Potential, Recording,
-        Result, Signal, Simulation, Solid, Spring, State, System, Tendon, Together, X, Y, Z,
+        Attachment, Body, Carrier, Component, Contact, ContactShape, Control, ElasticLaw,
+        Equilibrium, Error, GROUND, Grid, Handle, Identification, Input, Integrator, Joint,
+        JointKind, Load, Marker, Material, Motion, Muscle, Optimum, Orientation, Parameter, Part,
+        Potential, Recording, Result, Signal, Simulation, Solid, Spring, State, System, Tendon,
+        Together, X, Y, Z,
     };
 }
 

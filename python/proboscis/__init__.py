@@ -18,7 +18,7 @@ from proboscis.commands import Starts, Study, Sweep, check, inspect, starts, stu
 from proboscis.controller import Controller
 from proboscis.identification import Identification
 from proboscis.nlp import Nlp
-from proboscis.parts import GROUND, Body, Contact, Joint, Load, Marker, Material, Muscle, Part, Solid, Spring, Tendon
+from proboscis.parts import GROUND, Body, Contact, ContactShape, Joint, Load, Marker, Material, Muscle, Part, Solid, Spring, Tendon
 from proboscis.problem import Iteration, Problem, Step
 from proboscis.result import Figure, Result
 from proboscis.sensitivity import Sensitivity
@@ -30,6 +30,7 @@ __all__ = [
     "GROUND",
     "Body",
     "Contact",
+    "ContactShape",
     "Controller",
     "Error",
     "Figure",

@@ -63,11 +63,38 @@ class BodyMesh(TypedDict):
     """Length of its unit, SI unit m; 1 m where not written."""
 
 
+class BoxShape(TypedDict):
+    """A box, or a plate."""
+
+    at: Sequence[Quantity] | Numbers
+    """Centre, SI unit m."""
+
+    axes: NotRequired[Sequence[Sequence[float] | Numbers]]
+    """Directions of the edges of the first two lengths in the ground frame; x and y where not written."""
+
+    radius: NotRequired[Quantity]
+    """Radius of its edges, no more than half of the least length, SI unit m; sharp where not written."""
+
+    size: Sequence[Quantity] | Numbers
+    """Lengths of its edges, SI unit m."""
+
+
 class Box(TypedDict):
     """A box."""
 
     size: Sequence[Quantity] | Numbers
     """Edge lengths along x, y, z, SI unit m."""
+
+
+CapsuleShape = TypedDict(
+    "CapsuleShape",
+    {
+        "from": "Sequence[Quantity] | Numbers",
+        "radius": "Quantity",
+        "to": "Sequence[Quantity] | Numbers",
+    },
+)
+"""A capsule."""
 
 
 class Circuit(TypedDict):
@@ -340,6 +367,16 @@ class Pair(TypedDict):
     """Length at rest, SI unit m."""
 
 
+class PlaneShape(TypedDict):
+    """A plane."""
+
+    at: Sequence[Quantity] | Numbers
+    """A point of it, SI unit m."""
+
+    normal: Sequence[float] | Numbers
+    """Normal in the ground frame, of any length, towards what touches it."""
+
+
 class Plane(TypedDict):
     """A plane at right angles to an axis: exactly one of the three."""
 
@@ -458,6 +495,16 @@ class Sine(TypedDict):
 
     phase: NotRequired[Quantity]
     """Phase, SI unit rad; 0 where not written."""
+
+
+class SphereShape(TypedDict):
+    """A sphere."""
+
+    at: Sequence[Quantity] | Numbers
+    """Centre, SI unit m."""
+
+    radius: NotRequired[Quantity]
+    """Radius, SI unit m; a point where not written."""
 
 
 class Sphere(TypedDict):

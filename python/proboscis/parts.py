@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from proboscis import entries
     from proboscis.entries import Numbers, Quantity, Text
 
-__all__ = ["GROUND", "Part", "Material", "Body", "Joint", "Muscle", "Solid", "Spring", "Tendon", "Contact", "Load", "Marker"]
+__all__ = ["GROUND", "Part", "Material", "Body", "Joint", "Muscle", "Solid", "Spring", "Tendon", "ContactShape", "Contact", "Load", "Marker"]
 
 
 class Material(Part):
@@ -388,10 +388,48 @@ class Tendon(Part):
         )
 
 
-class Contact(Part):
-    """A sphere or a point that touches a `plane` or an `other` sphere, with a `stiffness` or the law of `hertz`.
+class ContactShape(Part):
+    """A shape that contacts name: a `sphere`, `capsule`, `box` or `plane` of a body.
 
-    * `sphere`: The sphere.
+    * `body`: Name of the body, or `ground`; the ground where not written.
+    * `box`: A box.
+    * `capsule`: A cylinder between two half spheres.
+    * `group`: Name of the shapes that contacts mean together.
+    * `plane`: A plane, which reaches to infinity.
+    * `sphere`: A sphere, or a point.
+    """
+
+    kind, noun = "shapes", "shape"
+
+    def __init__(
+        self,
+        name: str | None = None,
+        *,
+        body: Text | None = None,
+        box: entries.BoxShape | None = None,
+        capsule: entries.CapsuleShape | None = None,
+        group: Text | None = None,
+        plane: entries.PlaneShape | None = None,
+        sphere: entries.SphereShape | None = None,
+    ) -> None:
+        super().__init__(
+            name,
+            {
+                "body": body,
+                "box": box,
+                "capsule": capsule,
+                "group": group,
+                "plane": plane,
+                "sphere": sphere,
+            },
+        )
+
+
+class Contact(Part):
+    """Contact of all pairs of shapes `between` two names, or of a `sphere` or a point and a `plane` or an `other` sphere, with a `stiffness` or
+    the law of `hertz`.
+
+    * `between`: Names of two shapes, or of groups of shapes.
     * `friction`: Coefficient of friction; without it the contact is smooth.
     * `hertz`: Law of Hertz for elastic solids, one of them on a rigid one or two; or give `stiffness`.
     * `other`: The other sphere that it touches; or give `plane`.
@@ -400,6 +438,7 @@ class Contact(Part):
     * `slip_speed`: Speed of slip up to which friction grows, SI unit m/s; 0.1 mm/s where not written. What sticks creeps at a part of it, unless
       `stick` is written.
     * `smoothing`: Width of the overlap around zero over which the stiffness grows, SI unit m, for optimal control; it jumps where not written.
+    * `sphere`: The sphere; or give `between`.
     * `stick`: Greatest elastic displacement before the contact slips, SI unit m; with it friction holds without creep.
     * `stiffness`: Force for an overlap of the undeformed shapes, SI unit N/m; or give `hertz`.
     """
@@ -410,7 +449,7 @@ class Contact(Part):
         self,
         name: str | None = None,
         *,
-        sphere: entries.ContactSphere,
+        between: Sequence[Text] | None = None,
         friction: float | None = None,
         hertz: Sequence[entries.ElasticSolid] | None = None,
         other: entries.ContactSphere | None = None,
@@ -418,13 +457,14 @@ class Contact(Part):
         restitution: entries.Restitution | None = None,
         slip_speed: Quantity | None = None,
         smoothing: Quantity | None = None,
+        sphere: entries.ContactSphere | None = None,
         stick: Quantity | None = None,
         stiffness: Quantity | None = None,
     ) -> None:
         super().__init__(
             name,
             {
-                "sphere": sphere,
+                "between": between,
                 "friction": friction,
                 "hertz": hertz,
                 "other": other,
@@ -432,6 +472,7 @@ class Contact(Part):
                 "restitution": restitution,
                 "slip_speed": slip_speed,
                 "smoothing": smoothing,
+                "sphere": sphere,
                 "stick": stick,
                 "stiffness": stiffness,
             },

@@ -61,12 +61,12 @@ class System(Questions):
         return cls.from_dict(scene, folder=path.parent)
 
     def add(self, part: _Part, /) -> _Part:
-        """Adds a part and returns it; without a name it gets one, such as `muscle3`."""
+        """Adds a part and returns it; without a name it gets one, such as `muscle3`; contacts `between` shapes are named by these."""
         if not isinstance(part, Part):
             raise Error(f"found {part!r}, expected a part")
         materials = part.kind == "materials"
         there = self.scene.setdefault(part.kind, {} if materials else [])
-        if part.name is None:
+        if part.name is None and "between" not in part.entries:
             part.name = f"{part.noun}{len(there) + 1}"
         if materials:
             if part.name in there:

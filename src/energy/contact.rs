@@ -181,10 +181,21 @@ impl ContactLaw {
 
     /// Overlap and normal force at r and n and their rates.
     pub fn touch(&self, [at, rates]: [[Vector3<f64>; 2]; 2]) -> Touch {
-        let [gap, slope, ..] = self.gap(self.surface.form(at));
         let [by_r, by_n] = self.surface.gradient(at);
+        let rate = by_r.dot(&rates[0]) + by_n.dot(&rates[1]);
+        self.touch_at(self.surface.form(at), rate)
+    }
+
+    /// Returns true if there is no force at the form.
+    pub(super) fn is_open(&self, form: f64) -> bool {
+        self.of_overlap(-self.gap(form)[0])[1] == 0.0
+    }
+
+    /// Overlap and normal force at the form and its rate.
+    pub(super) fn touch_at(&self, form: f64, rate: f64) -> Touch {
+        let [gap, slope, ..] = self.gap(form);
         let overlap = -gap;
-        let rate = -slope * (by_r.dot(&rates[0]) + by_n.dot(&rates[1]));
+        let rate = -slope * rate;
         Touch {
             overlap,
             force: self.of_overlap(overlap)[1] * self.growth(rate)[0],
@@ -206,7 +217,7 @@ pub struct ContactElasticity(pub ContactLaw);
 
 impl ContactElasticity {
     /// The energy as a function of the form q with three derivatives.
-    fn of(&self, q: f64) -> [f64; 4] {
+    pub(super) fn of(&self, q: f64) -> [f64; 4] {
         let overlap = self.0.gap(q).map(|x| -x);
         chain(self.0.of_overlap(overlap[0]), overlap)
     }
@@ -318,7 +329,8 @@ impl ContactDamping {
 pub struct ContactGap(pub ContactLaw);
 
 impl ContactGap {
-    fn of(&self, q: f64) -> [f64; 4] {
+    /// The gap as a function of the form q with three derivatives.
+    pub(super) fn of(&self, q: f64) -> [f64; 4] {
         self.0.gap(q)
     }
 }

@@ -88,7 +88,7 @@ impl<const K: usize> OfDotProducts<K> {
     }
 
     /// Derivatives by the vectors of a sum of products times slopes.
-    fn turned<const D: usize>(
+    pub(super) fn turned<const D: usize>(
         &self,
         products: [Product<'_>; D],
         slopes: &SVector<f64, D>,

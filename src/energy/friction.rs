@@ -13,7 +13,7 @@
 
 use crate::energy::contact::{ramp, vector, virtual_work};
 use crate::energy::dot_products::{OfDotProducts, Product};
-use crate::energy::{ContactLaw, Energy, Surface, Touch};
+use crate::energy::{ContactLaw, Energy, Surface};
 use crate::math::{Derivatives, Jet, Local};
 use nalgebra::{Matrix3, SVector, Vector3};
 
@@ -179,18 +179,17 @@ impl ContactFriction {
         turned([v, w]).unwrap_or_default() + turned([w, v]).unwrap_or_default().transpose()
     }
 
-    /// Sizes of friction in N and slip in mm/ms at vectors and rates, and at the vector z of friction that sticks.
+    /// Sizes of friction in N and slip in mm/ms at vectors and rates, at a normal force in N and the vector z of friction that sticks.
     pub fn of_rates(
         &self,
         x: &[Vector3<f64>],
         rates: &[Vector3<f64>],
+        force: f64,
         bristle: Option<Vector3<f64>>,
     ) -> [f64; 2] {
         let normal = self.normal(x);
         let across =
             |v: Vector3<f64>| (v - normal * (normal.dot(&v) / normal.norm_squared())).norm();
-        let ends = [x, rates].map(|of| [of[0], of[of.len().min(4) - 1]]);
-        let Touch { force, .. } = self.law.touch(ends);
         let speed = across(self.velocity(x, rates));
         let part = bristle.map_or(speed / speed.hypot(self.slip_speed), across);
         [self.coefficient * force * part, speed]
@@ -227,8 +226,12 @@ impl ContactFriction {
         square.shifted(self.slip_speed * self.slip_speed).sqrt()
     }
 
-    /// The work as a function of its vectors.
-    fn work(&self, vectors: [Vector3<f64>; 4]) -> OfDotProducts<4> {
+    /// The work as a function of its vectors, with −μ f φ as a function of the form and its rate.
+    pub(super) fn work(
+        &self,
+        vectors: [Vector3<f64>; 4],
+        limit: impl FnOnce(&Jet<3, 2>, &Jet<3, 2>) -> Jet<3, 2>,
+    ) -> OfDotProducts<4> {
         let (mut work, normal) = (OfDotProducts::new(vectors), self.normal_of::<4>());
         let virtuals: [Product<'_>; 2] = [&[[VIRTUAL, VELOCITY]], &[[VIRTUAL, normal]]];
         let products: [Product<'_>; 3] = [
@@ -238,20 +241,20 @@ impl ContactFriction {
         ];
         work.add(virtuals, products, |[q, along, half]| {
             let part = self.part(&q, along);
-            let factor = self.limit(&q, &along) * self.speed([half, along, part]).recip();
+            let factor = limit(&q, &along) * self.speed([half, along, part]).recip();
             [factor, -(factor * part)]
         });
         work
     }
 
     fn local<const N: usize, const M: usize>(&self, p: &SVector<f64, M>) -> FrictionLocal<N, 4> {
-        self.derivatives(p, |_, [virtual_velocity, place, velocity, normal]| {
-            self.work([virtual_velocity, place, velocity, normal])
+        self.derivatives(p, |_, vectors| {
+            self.work(vectors, |q, along| self.limit(q, along))
         })
     }
 
     /// Derivatives of a work of virtual velocity, place, velocity and normal, and where `K` has room of the readings of a last vector.
-    fn derivatives<const N: usize, const K: usize, const M: usize>(
+    pub(super) fn derivatives<const N: usize, const K: usize, const M: usize>(
         &self,
         p: &SVector<f64, M>,
         work: impl FnOnce([Vector3<f64>; 3], [Vector3<f64>; 4]) -> OfDotProducts<K>,

@@ -2,9 +2,12 @@
 
 mod along_span;
 mod charge;
+mod closest;
 mod coefficient;
 mod constraint;
 mod contact;
+mod cored;
+mod cored_friction;
 mod dot_products;
 mod elastic_law;
 mod friction;
@@ -23,11 +26,14 @@ pub use charge::{
     Capacitance, FlowingCharge, FlowingChargeField, GivenCharge, GivenChargeField, MeanCharge,
     PotentialDrop, SourceCurrent, SourcePower, StoredEnergy, VoltageAcross,
 };
+pub use closest::Cores;
 pub use coefficient::Coefficient;
 pub use constraint::{Coincidence, Orthogonality};
 pub use contact::{
     ContactDamping, ContactElasticity, ContactForce, ContactGap, ContactLaw, OfForm, Surface, Touch,
 };
+pub use cored::{CoreForce, FormVariation, OfClosest, OfCores, Times};
+pub use cored_friction::{AtFeet, CoreFriction};
 pub use dot_products::OfDotProducts;
 pub use elastic_law::{ElasticConstants, ElasticLaw, Elasticity, NeoHooke};
 pub use friction::{ContactFriction, FrictionLocal, StickingFriction};

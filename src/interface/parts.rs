@@ -4,7 +4,7 @@ use crate::interface::handle::{Carrier, Handle, Part, builder, makers, named};
 use crate::math::{Matrix, Signal};
 use crate::mesh::Mesh;
 use crate::model::components::{
-    BlockLoad, Contact, ContactElasticLaw, ContactSide, ContactSphere, ElasticSolid, Faces, Load,
+    BlockLoad, Contact, ContactElasticLaw, ContactShape, ContactSide, ElasticSolid, Faces, Load,
     LoadPlace, Other, Restitution, SLIP_SPEED, Spring, Tendon,
 };
 use crate::model::system::{
@@ -333,7 +333,8 @@ impl Contact {
     ) -> Self {
         let normal = plane.2.normalize();
         let at = attachment(plane.0, plane.1);
-        touching(sphere, ContactSide::Plane { at, normal })
+        let plane = ContactSide::Plane { at, normal };
+        touching(ContactShape::sphere(sphere.0, sphere.1, sphere.2), plane)
     }
 
     /// Two spheres, each a carrier, the centre in mm and the radius in mm, one of them zero of a point. Without stiffness so far.
@@ -341,21 +342,57 @@ impl Contact {
         one: (impl Into<Carrier>, Vector3<f64>, f64),
         other: (impl Into<Carrier>, Vector3<f64>, f64),
     ) -> Self {
-        touching(one, ContactSide::Sphere(contact_sphere(other)))
+        let one = ContactShape::sphere(one.0, one.1, one.2);
+        let other = ContactShape::sphere(other.0, other.1, other.2);
+        touching(one, ContactSide::Shape(other))
+    }
+
+    /// Two shapes, of which no more than one is a box. Without stiffness so far.
+    pub fn of_shapes(one: ContactShape, other: ContactShape) -> Self {
+        let [round, other] = ContactShape::by_axes([one, other]);
+        touching(round, ContactSide::Shape(other))
     }
 }
 
-fn contact_sphere(of: (impl Into<Carrier>, Vector3<f64>, f64)) -> ContactSphere {
-    ContactSphere {
-        centre: attachment(of.0, of.1),
-        radius: of.2,
+impl ContactShape {
+    /// A sphere of a body or the ground: its centre and radius in mm, zero of a point.
+    pub fn sphere(carrier: impl Into<Carrier>, centre: Vector3<f64>, radius: f64) -> Self {
+        Self {
+            centre: attachment(carrier, centre),
+            radius,
+            ..Self::default()
+        }
+    }
+
+    /// A capsule of a body or the ground: both centres of its ends and its radius in mm.
+    pub fn capsule(carrier: impl Into<Carrier>, ends: [Vector3<f64>; 2], radius: f64) -> Self {
+        let [from, to] = ends;
+        let half = (to - from) * 0.5;
+        Self {
+            axes: [half, Vector3::zeros(), Vector3::zeros()],
+            ..Self::sphere(carrier, (from + to) * 0.5, radius)
+        }
+    }
+
+    /// A box of a body or the ground: its centre, three half axes at right angles to the faces and the radius of its edges in mm.
+    pub fn cuboid(
+        carrier: impl Into<Carrier>,
+        centre: Vector3<f64>,
+        half_axes: [Vector3<f64>; 3],
+        radius: f64,
+    ) -> Self {
+        let core = |axis: Vector3<f64>| axis * (1.0 - radius / axis.norm()).max(0.0);
+        Self {
+            axes: half_axes.map(core),
+            ..Self::sphere(carrier, centre, radius)
+        }
     }
 }
 
-fn touching(sphere: (impl Into<Carrier>, Vector3<f64>, f64), side: ContactSide) -> Contact {
+fn touching(round: ContactShape, side: ContactSide) -> Contact {
     Contact {
         name: String::new(),
-        sphere: contact_sphere(sphere),
+        round,
         side,
         elasticity: ContactElasticLaw::Linear(0.0),
         smoothing: 0.0,

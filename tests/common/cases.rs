@@ -1,13 +1,13 @@
 //! A list of control problems that together call for every effect, joint, limit, goal and objective.
 
 use super::ends::ends;
-pub use super::limited::{all_limits, charge_limits, tension};
+pub use super::limited::{all_limits, charge_limits, gaps, tension};
 use super::measuring::measuring;
 use super::pairs::pairs;
 use super::remembering::{remembering, remembering_blocks};
 use super::systems::{
     GRAVITY, ball, blocks, branched, charged, loaded, pressed, satellite, sprung, stiffening,
-    stiffening_blocks, tied, touching,
+    stiffening_blocks, tied, touching, touching_shapes,
 };
 use super::timed::timed;
 use super::tracked::{energies, tracked};
@@ -266,6 +266,15 @@ pub fn cases() -> Vec<Case> {
             c.duration = free;
             c.objective = every_objective();
         }),
+        case("contacts of shapes", touching_shapes(trunk(2)), &|_| {}),
+        case(
+            "contacts of shapes, free time",
+            touching_shapes(trunk(2)),
+            &|c| {
+                c.duration = free;
+                c.limits = gaps();
+            },
+        ),
         case("branched tree", branched(), &|_| {}),
         case("branched tree with joint springs", sprung(), &|_| {}),
         case("branched tree that remembers", remembering(), &|c| {

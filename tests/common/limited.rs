@@ -26,6 +26,17 @@ pub fn speed(marker: usize) -> Limit {
     Limit::new(What::Speed(marker), [0.02, 0.6])
 }
 
+/// Limits of the gaps and normal forces of three contacts.
+pub fn gaps() -> Vec<Limit> {
+    let of = |contact| {
+        [
+            Limit::new(What::Gap(contact), [-20.0, 90.0]),
+            Limit::below(What::ContactForce(contact), 0.9),
+        ]
+    };
+    (0..3).flat_map(of).collect()
+}
+
 /// Every limit of charged muscles, of which one is behind a resistor and the charge of another is given.
 pub fn charge_limits() -> Vec<Limit> {
     vec![

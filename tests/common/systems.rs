@@ -5,7 +5,7 @@ use super::trunk;
 use nalgebra::{Matrix3, Rotation3, Vector3};
 use proboscis::mesh::grid::Grid;
 use proboscis::model::components::{
-    Contact, ContactElasticLaw, ContactSide, ContactSphere, ElasticSolid, Load, LoadPlace,
+    Contact, ContactElasticLaw, ContactShape, ContactSide, ElasticSolid, Load, LoadPlace,
     Restitution, Spring, Tendon,
 };
 use proboscis::model::system::{
@@ -70,7 +70,11 @@ pub fn touching(mut system: System) -> System {
     };
     let contact = |name: &str, centre, radius, side| Contact {
         name: name.into(),
-        sphere: ContactSphere { centre, radius },
+        round: ContactShape {
+            centre,
+            radius,
+            ..ContactShape::default()
+        },
         side,
         elasticity: ContactElasticLaw::Linear(0.02),
         smoothing: 60.0,
@@ -90,9 +94,10 @@ pub fn touching(mut system: System) -> System {
         at: point(Some(0), 0.0, 45.0, 0.0),
         normal: Vector3::y(),
     };
-    let other = ContactSide::Sphere(ContactSphere {
+    let other = ContactSide::Shape(ContactShape {
         centre: point(Some(0), 0.0, 30.0, 5.0),
         radius: 15.0,
+        ..ContactShape::default()
     });
     let solid = ElasticSolid {
         modulus: 0.01,
@@ -110,6 +115,41 @@ pub fn touching(mut system: System) -> System {
             ..contact("own", point(Some(1), 0.0, 70.0, 0.0), 12.0, other)
         },
     ];
+    system
+}
+
+/// The same with shapes in the place of spheres: a ball and a capsule at a plate of the ground, and a capsule at one of the other body.
+pub fn touching_shapes(system: System) -> System {
+    let mut system = touching(system);
+    let axis = |x: f64, y: f64, z: f64| Vector3::new(x, y, z);
+    let plate = ContactSide::Shape(ContactShape {
+        centre: Attachment {
+            body: None,
+            at: axis(-15.0, 70.0, 0.0),
+        },
+        radius: 2.0,
+        axes: [
+            axis(4.0, 3.0, 0.0),
+            axis(0.0, 0.0, 12.0),
+            axis(-3.0, 4.0, 0.0),
+        ],
+    });
+    let [wall, lid, own] = &mut system.components.contacts[..] else {
+        unreachable!("there are three contacts")
+    };
+    wall.side = plate.clone();
+    lid.side = plate;
+    lid.round.axes[0] = axis(5.0, 1.0, 8.0);
+    own.round.axes[0] = axis(1.0, 3.0, 6.0);
+    own.round.radius = 3.0;
+    own.smoothing = 120.0;
+    own.elasticity = ContactElasticLaw::Linear(0.02);
+    if let ContactSide::Shape(other) = &mut own.side {
+        other.radius = 4.0;
+        other.axes[0] = axis(9.0, 2.0, 0.0);
+    }
+    lid.stick = None;
+    own.stick = None;
     system
 }
 

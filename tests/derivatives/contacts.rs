@@ -13,7 +13,7 @@ use proboscis::energy::{
 use proboscis::math::Jet;
 
 /// s/w = y/2 + 5/64 + 15/16 y² − 5/4 y⁴ + y⁶ of y = x/w: the half of x, and an even part.
-fn ramp<D: DualNum<f64> + Copy>(x: D, width: f64) -> D {
+pub(crate) fn ramp<D: DualNum<f64> + Copy>(x: D, width: f64) -> D {
     let y = x / width;
     if y.re() <= -0.5 {
         return x * 0.0;
@@ -35,13 +35,13 @@ fn height<D: DualNum<f64> + Copy>(surface: Surface, r: [D; 3], n: [D; 3]) -> D {
     }
 }
 
-fn elastic<D: DualNum<f64> + Copy>(law: &ContactLaw, height: D) -> D {
+pub(crate) fn elastic<D: DualNum<f64> + Copy>(law: &ContactLaw, height: D) -> D {
     let s = ramp(-height + law.distance, law.smoothing);
     s.powf(law.exponent + 1.0) * (law.stiffness / (law.exponent + 1.0))
 }
 
 /// Vectors by number, of which those beyond the last are zero.
-fn vectors<D: DualNum<f64> + Copy>(p: &[D], readings: usize) -> Vec<Vec<[D; 3]>> {
+pub(crate) fn vectors<D: DualNum<f64> + Copy>(p: &[D], readings: usize) -> Vec<Vec<[D; 3]>> {
     let each = p.len() / readings;
     let read = |part: &[D]| part.chunks(3).map(|v| three(v, 0)).collect();
     p.chunks(each).map(read).collect()
@@ -158,7 +158,11 @@ fn across<D: DualNum<f64> + Copy>(u: [D; 3], n: [D; 3]) -> [D; 3] {
 }
 
 /// Slip of rates or variations, along a plane of a body by its two components.
-fn slip<D: DualNum<f64> + Copy>(of: &ContactFriction, at: &[[D; 3]], motion: &[[D; 3]]) -> [D; 3] {
+pub(crate) fn slip<D: DualNum<f64> + Copy>(
+    of: &ContactFriction,
+    at: &[[D; 3]],
+    motion: &[[D; 3]],
+) -> [D; 3] {
     let zero = at[0][0] * 0.0;
     let size = of.law.distance;
     let mut radii = of.radii.to_vec();
@@ -229,7 +233,7 @@ impl WrittenAgain for StickingFriction {
 }
 
 /// Linear within a wide ramp, and after Hertz beyond a narrow one.
-fn laws(surface: Surface) -> [ContactLaw; 2] {
+pub(crate) fn laws(surface: Surface) -> [ContactLaw; 2] {
     let law = |exponent, distance, smoothing| ContactLaw {
         surface,
         distance,

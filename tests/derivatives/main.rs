@@ -7,6 +7,7 @@ mod action;
 mod amounts;
 mod arithmetic;
 mod contacts;
+mod cored_contacts;
 mod costs;
 mod differences;
 mod elastic_laws;

@@ -3,7 +3,7 @@
 use crate::scene::{folder, mistake};
 use proboscis::files::read_problem;
 use proboscis::model::components::{
-    ContactElasticLaw, ContactSide, ContactSphere, ElasticSolid, LoadPlace, Restitution,
+    ContactElasticLaw, ContactShape, ContactSide, ElasticSolid, LoadPlace, Restitution,
 };
 use proboscis::model::system::{ElasticLaw, Fidelity, System};
 
@@ -89,9 +89,9 @@ const CASES: &[Case] = &[
     ("\"friction\": 0.4", "\"friction\": -0.4", "contacts[0].friction", |s| s.components.contacts[0].friction = Some(-0.4)),
     ("\"7 mm/s\"", "0", "contacts[0].slip_speed", |s| s.components.contacts[0].slip_speed = 0.0),
     ("\"8 um\"", "\"-8 um\"", "contacts[0].stick", |s| s.components.contacts[0].stick = Some(-0.008)),
-    ("\"4 mm\"", "\"-4 mm\"", "contacts[0].sphere.radius", |s| s.components.contacts[0].sphere.radius = -4.0),
-    (", \"radius\": \"4.1 mm\"", "", "contacts[1].sphere.radius", |s| s.components.contacts[1].sphere.radius = 0.0),
-    ("\"6.1 mm\"", "\"-6 mm\"", "contacts[1].other.radius", |s| s.components.contacts[1].side = ContactSide::Sphere(ContactSphere { radius: -6.0, ..Default::default() })),
+    ("\"4 mm\"", "\"-4 mm\"", "contacts[0].sphere.radius", |s| s.components.contacts[0].round.radius = -4.0),
+    (", \"radius\": \"4.1 mm\"", "", "contacts[1].sphere.radius", |s| s.components.contacts[1].round.radius = 0.0),
+    ("\"6.1 mm\"", "\"-6 mm\"", "contacts[1].other.radius", |s| s.components.contacts[1].side = ContactSide::Shape(ContactShape { radius: -6.0, ..Default::default() })),
     ("\"8 MPa\"", "0", "contacts[1].hertz[0].modulus", |s| hertz(s)[0].modulus = 0.0),
     ("0.45", "0.6", "contacts[1].hertz[0].poisson_ratio", |s| hertz(s)[0].poisson_ratio = 0.6),
     ("[ { \"modulus\": \"8 MPa\", \"poisson_ratio\": 0.45 } ]", "[]", "contacts[1].hertz", |s| hertz(s).clear()),

@@ -13,6 +13,7 @@ mod component_files;
 mod components;
 mod conserve;
 mod contact;
+mod contact_shapes;
 mod dissipation;
 mod elastic_laws;
 mod estimates;

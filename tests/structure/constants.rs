@@ -30,7 +30,7 @@ const WITH_UNITS: [(&str, &str); 15] = [
     ("control/regulator.rs", "RATE_TIME"),
     ("control/transcription/cost_rows.rs", "MILLISECOND"),
     ("control/transcription/cost_rows.rs", "MILLIJOULE"),
-    ("model/components/contact.rs", "SLIP_SPEED"),
+    ("model/components/contact_law.rs", "SLIP_SPEED"),
     ("model/system/check.rs", "DENSEST"),
     ("model/system/check.rs", "SHORTEST_SPAN"),
     ("model/constants/constant.rs", "ROUNDING"),

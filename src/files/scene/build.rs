@@ -3,7 +3,7 @@
 use crate::files::json::path::JsonPath;
 use crate::files::json::scope::{Result, Scope, refuse, the_one};
 use crate::files::scene::body::{body, check_connected};
-use crate::files::scene::contact::contact;
+use crate::files::scene::contact::contacts;
 use crate::files::scene::expand::{add_named, expanded};
 use crate::files::scene::joint::joint;
 use crate::files::scene::load::{Carriers, load};
@@ -12,6 +12,7 @@ use crate::files::scene::muscle::muscle;
 use crate::files::scene::names::{find_body, names};
 use crate::files::scene::nodes::place;
 use crate::files::scene::point::{unit_axis, vector};
+use crate::files::scene::shape::shape;
 use crate::files::scene::solid::solid;
 use crate::files::scene::spec::{ChainSpec, MarkerSpec, SceneSpec};
 use crate::files::scene::spring::{spring, tendon};
@@ -60,6 +61,15 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
         solids: &blocks,
     };
     let loads = lists.build("loads", &scene.loads, |spec, scope| load(spec, &on, scope))?;
+    let shapes = lists.build("shapes", &scene.shapes, |spec, scope| {
+        shape(spec, &body_names, scope)
+    })?;
+    let pairs = lists.build("contacts", &scene.contacts, |spec, scope| {
+        contacts(spec, &body_names, &shapes, scope)
+    })?;
+    let written = pairs.iter().enumerate();
+    let written = written.flat_map(|(index, pairs)| vec![index; pairs.len()]);
+    let written: Vec<usize> = written.collect();
     let system = System {
         bodies: lists.build("bodies", &scene.bodies, body)?,
         muscles,
@@ -79,16 +89,14 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
             tendons: lists.build("tendons", &scene.tendons, |spec, scope| {
                 tendon(spec, &body_names, scope)
             })?,
-            contacts: lists.build("contacts", &scene.contacts, |spec, scope| {
-                contact(spec, &body_names, scope)
-            })?,
+            contacts: pairs.concat(),
             loads,
             others: Vec::new(),
         },
         joints,
         name: scene.name,
     };
-    lists.check(&system)?;
+    lists.check(&system, &written)?;
     check_connected(&scene.bodies, &system.joints, |index| {
         lists.scope("bodies", index)
     })?;
@@ -111,7 +119,20 @@ fn check_names(scene: &SceneSpec, lists: &Lists<'_>) -> Result<()> {
         &names(&scene.muscles, |muscle| &muscle.name),
         &reserved,
     )?;
-    lists.unique("solids", &names(&scene.solids, |solid| &solid.name), &[])
+    lists.unique("solids", &names(&scene.solids, |solid| &solid.name), &[])?;
+    let mut shapes = names(&scene.shapes, |shape| &shape.name);
+    lists.unique("shapes", &shapes, &[])?;
+    let count = shapes.len();
+    for (index, shape) in scene.shapes.iter().enumerate() {
+        if let Some(group) = &shape.group {
+            shapes.truncate(count);
+            shapes.push(group.clone());
+            lists
+                .scope
+                .unique(&shapes, &[], |_| lists.scope("shapes", index).key("group"))?;
+        }
+    }
+    Ok(())
 }
 
 /// Elements counted while a scene is built.
@@ -191,11 +212,24 @@ impl<'a> Lists<'a> {
         specs.iter().enumerate().map(build).collect()
     }
 
-    /// Checks the rules of a system.
-    fn check(&self, system: &System) -> Result<()> {
+    /// Checks the rules of a system, whose contacts are `written` in entries of their list.
+    fn check(&self, system: &System, written: &[usize]) -> Result<()> {
         system.check().map_err(|error| {
-            let (mut part, mut fault) = (self.place(error.list, error.index), error.fault);
+            let index = match error.list {
+                "contacts" => written[error.index],
+                _ => error.index,
+            };
+            let (mut part, mut fault) = (self.place(error.list, index), error.fault);
+            let is_between = |index: usize| self.scene.contacts[index].between.is_some();
+            let of_shapes = ["name", "sphere", "other", "plane"];
             match (error.list, part.last_key()) {
+                // Shapes make the sides of a pair and its name.
+                ("contacts", _)
+                    if is_between(index)
+                        && of_shapes.iter().any(|key| fault.at.starts_with(key)) =>
+                {
+                    fault.at = "between".into();
+                }
                 // A chain makes the names of its parts.
                 (_, Some("chain")) if fault.at == "name" => fault.at.clear(),
                 ("muscles", Some("chain")) => part = part.key("muscles"),

@@ -1,6 +1,7 @@
 //! The scene file: its types as written (`spec`, `spec_solids`, `point`) and their conversion to a [`System`](crate::model::System).
 //!
-//! - `build`: the scene; `body`, `joint`, `material`, `muscle`, `spring`, `contact`, `load`: its parts, each described and converted in one file.
+//! - `build`: the scene; `body`, `joint`, `material`, `muscle`, `spring`, `shape`, `contact`, `load`: its parts, each described and
+//!   converted in one file.
 //! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `names`: resolution of names.
 //! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
@@ -19,6 +20,7 @@ pub(crate) mod muscle;
 pub(crate) mod names;
 pub(crate) mod nodes;
 pub mod point;
+pub mod shape;
 pub(crate) mod solid;
 pub mod spec;
 pub mod spec_solids;

@@ -8,6 +8,7 @@ use crate::files::scene::joint::JointSpec;
 use crate::files::scene::load::LoadSpec;
 use crate::files::scene::material::MaterialSpec;
 use crate::files::scene::point::{Point, PointSpec};
+use crate::files::scene::shape::ContactShapeSpec;
 use crate::files::scene::spec_solids::{CircuitSpec, ElementSpec, SolidSpec};
 use crate::files::scene::spring::{SpringSpec, TendonSpec};
 use crate::files::units::quantity::{
@@ -37,7 +38,9 @@ objects! {
         pub springs?: Vec<SpringSpec>,
         /// Elastic cables through points.
         pub tendons?: Vec<TendonSpec>,
-        /// Contacts of spheres with planes or other spheres.
+        /// Shapes that contacts name.
+        pub shapes?: Vec<ContactShapeSpec>,
+        /// Contacts of shapes.
         pub contacts?: Vec<ContactSpec>,
         /// Forces and torques whose sizes a problem gives or seeks.
         pub loads?: Vec<LoadSpec>,

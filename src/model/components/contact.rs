@@ -1,13 +1,15 @@
 //! A contact of a round shape with a plane or another round shape.
 
 use crate::energy::{
-    ContactDamping, ContactElasticity, ContactFriction, ContactLaw, Energy, StickingFriction,
-    Surface,
+    ContactDamping, ContactElasticity, ContactFriction, ContactLaw, CoreFriction, Cores, Energy,
+    OfCores, StickingFriction, Surface, Touch,
 };
 use crate::functional::Element;
 use crate::kinematics::MaterialVector;
 use crate::math::{DIRECTION, Fault, Key, not_negative, positive, refuse};
 use crate::model::components::component::Component;
+use crate::model::components::contact_law::{ContactElasticLaw, Restitution};
+use crate::model::components::contact_shape::{ContactShape, Core, cores};
 use crate::model::layout::contact_reading::ContactReading;
 use crate::model::system::bodies::Attachment;
 use crate::model::system::joints::triad;
@@ -20,8 +22,8 @@ use std::ops::Range;
 pub struct Contact {
     /// Unique name.
     pub name: String,
-    /// The round shape.
-    pub sphere: ContactSphere,
+    /// The round shape: a point, a sphere or, against a capsule or a box, a capsule.
+    pub round: ContactShape,
     /// The other side.
     pub side: ContactSide,
     /// Elasticity of both.
@@ -38,15 +40,6 @@ pub struct Contact {
     pub stick: Option<f64>,
 }
 
-/// A sphere of a body or of the ground.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct ContactSphere {
-    /// Its centre.
-    pub centre: Attachment,
-    /// Its radius in mm; zero of a point.
-    pub radius: f64,
-}
-
 /// The side that a round shape touches.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ContactSide {
@@ -57,154 +50,18 @@ pub enum ContactSide {
         /// Unit normal in the reference configuration, towards the round shape.
         normal: Vector3<f64>,
     },
-    /// A sphere.
-    Sphere(ContactSphere),
-}
-
-/// Elasticity of a contact.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ContactElasticLaw {
-    /// Force proportional to the overlap, stiffness in N/mm.
-    Linear(f64),
-    /// Law of Hertz for one elastic solid on a rigid one, or for two.
-    Hertz(Vec<ElasticSolid>),
-}
-
-/// Elastic constants of a solid in contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ElasticSolid {
-    /// Young's modulus in MPa.
-    pub modulus: f64,
-    /// Poisson ratio.
-    pub poisson_ratio: f64,
-}
-
-/// Restitution of an impact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Restitution {
-    /// Speed after the impact over the speed before it.
-    pub coefficient: f64,
-    /// The speed in mm/ms at which it is so.
-    pub speed: f64,
+    /// Another shape.
+    Shape(ContactShape),
 }
 
 const ELASTICITY: &str = "contact elasticity";
 const DAMPING: &str = "contact damping";
 const FRICTION: &str = "contact friction";
 
-/// Speed of slip in mm/ms up to which friction grows where none is given.
-pub const SLIP_SPEED: f64 = 1e-4;
-
-impl ContactElasticLaw {
-    /// Stiffness in N/mmᵖ and exponent p for a radius of relative curvature in mm.
-    fn constants(&self, radius: f64) -> [f64; 2] {
-        match self {
-            Self::Linear(stiffness) => [*stiffness, 1.0],
-            Self::Hertz(solids) => {
-                let compliance = |solid: &ElasticSolid| {
-                    (1.0 - solid.poisson_ratio * solid.poisson_ratio) / solid.modulus
-                };
-                let compliance: f64 = solids.iter().map(compliance).sum();
-                [4.0 / 3.0 * radius.sqrt() / compliance, 1.5]
-            }
-        }
-    }
-}
-
-impl Restitution {
-    /// Damping times speed κ of the restitution e: `κ (1 + e) = ln[(1 + κ)/(1 − κ e)]`, zero of e = 1.
-    fn damping_number(&self) -> f64 {
-        let e = self.coefficient;
-        let excess = |k: f64| (k.ln_1p() - (-k * e).ln_1p()) - k * (1.0 + e);
-        if e >= 1.0 {
-            return 0.0;
-        }
-        let (mut low, mut high) = (0.0, 1.0 / e);
-        // The excess falls from zero at zero, and is infinite at 1/e.
-        loop {
-            let middle = 0.5 * (low + high);
-            if middle <= low || middle >= high {
-                return middle;
-            }
-            match excess(middle) > 0.0 {
-                true => high = middle,
-                false => low = middle,
-            }
-        }
-    }
-}
-
-/// Constants of a contact that a solver finds easily, no stiffer than its own.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SoftContact {
-    /// Width in mm of the overlap over which the stiffness grows.
-    smoothing: f64,
-    /// Part of the stiffness.
-    part: f64,
-    /// Speed in mm/ms of slip up to which friction grows.
-    slip_speed: f64,
-    /// Greatest elastic displacement in mm of friction that sticks.
-    stick: f64,
-}
-
-/// Part of a soft width in the place of a width that a scene does not have.
-const NO_WIDTH: f64 = 0.01;
-/// Overlap at which the laws of soft contacts are compared, in radii.
-const SMALL: f64 = 0.01;
-
 impl Contact {
-    /// The constants of a width in mm, a stiffness in N/mm, a speed of slip in mm/ms and an elastic displacement in mm, where they are softer
-    /// than those of the contact.
-    pub fn soft(&self, width: f64, stiffness: f64, slip_speed: f64, stick: f64) -> SoftContact {
-        let smoothing = width.max(self.smoothing);
-        let law = self.law_at_reference();
-        let overlap = smoothing.max(SMALL * law.distance);
-        let own = law.stiffness * overlap.powf(law.exponent - 1.0);
-        SoftContact {
-            smoothing,
-            part: (stiffness / own).min(1.0),
-            slip_speed: slip_speed.max(self.slip_speed),
-            stick,
-        }
-    }
-
-    /// The contact between its own constants, at t = 0, and soft ones, at t = 1, beyond which its width and its speed of slip grow on.
-    pub fn softened(&self, soft: &SoftContact, t: f64) -> Self {
-        let between = |own: f64, soft: f64| own * (soft.max(own) / own).powf(t);
-        let smoothing = match soft.smoothing > self.smoothing {
-            true => between(
-                self.smoothing.max(NO_WIDTH * soft.smoothing),
-                soft.smoothing,
-            ),
-            false => self.smoothing,
-        };
-        let part = soft.part.powf(t.min(1.0));
-        let elasticity = match &self.elasticity {
-            ContactElasticLaw::Linear(stiffness) => ContactElasticLaw::Linear(stiffness * part),
-            ContactElasticLaw::Hertz(solids) => {
-                let softer = solids.iter().map(|solid| ElasticSolid {
-                    modulus: solid.modulus * part,
-                    ..*solid
-                });
-                ContactElasticLaw::Hertz(softer.collect())
-            }
-        };
-        let slip_speed = match self.friction {
-            Some(_) => between(self.slip_speed, soft.slip_speed),
-            None => self.slip_speed,
-        };
-        Self {
-            elasticity,
-            smoothing,
-            slip_speed,
-            stick: self.stick.map(|own| between(own, soft.stick)),
-            ..self.clone()
-        }
-    }
-
     /// The points between which it acts.
     pub(in crate::model) fn ends(&self) -> [Attachment; 2] {
-        [self.sphere.centre, *self.origin()]
+        [self.round.centre, *self.origin()]
     }
 
     /// Number of the components of its elastic displacement: along a plane, or in space between spheres.
@@ -212,7 +69,7 @@ impl Contact {
         let holds = self.friction.is_some_and(|coefficient| coefficient > 0.0);
         match (self.stick, &self.side) {
             (Some(_), ContactSide::Plane { .. }) if holds => 2,
-            (Some(_), ContactSide::Sphere(_)) if holds => 3,
+            (Some(_), ContactSide::Shape(_)) if holds => 3,
             _ => 0,
         }
     }
@@ -232,29 +89,60 @@ impl Contact {
     fn origin(&self) -> &Attachment {
         match &self.side {
             ContactSide::Plane { at, .. } => at,
-            ContactSide::Sphere(other) => &other.centre,
+            ContactSide::Shape(other) => &other.centre,
         }
     }
 
-    /// Its spheres.
-    fn spheres(&self) -> Vec<ContactSphere> {
+    /// Its shapes.
+    fn shapes(&self) -> Vec<ContactShape> {
         match self.side {
-            ContactSide::Plane { .. } => vec![self.sphere],
-            ContactSide::Sphere(other) => vec![self.sphere, other],
+            ContactSide::Plane { .. } => vec![self.round],
+            ContactSide::Shape(other) => vec![self.round, other],
         }
+    }
+
+    /// The cores of its shapes; that of the other side is none of a plane.
+    fn each_core(&self) -> [Option<Core>; 2] {
+        let other = match &self.side {
+            ContactSide::Plane { .. } => None,
+            ContactSide::Shape(other) => other.core(),
+        };
+        [self.round.core(), other]
+    }
+
+    /// The cores of both shapes; none between points and planes.
+    fn cores(&self) -> Option<Cores> {
+        let [round, other] = &self.each_core();
+        cores([round, other], self.round.radius + self.other_radius())
+    }
+
+    /// The axes of the cores, that of the round shape first: unit vectors in the reference configuration with points of their bodies.
+    fn axes(&self) -> Vec<(Attachment, Vector3<f64>)> {
+        let of = |(end, core): (Attachment, Option<Core>)| {
+            let core = core.into_iter();
+            core.flat_map(move |core| {
+                let count = core.half_lengths.len();
+                core.directions
+                    .into_iter()
+                    .take(count)
+                    .map(move |axis| (end, axis))
+            })
+        };
+        let ends = self.ends().into_iter();
+        ends.zip(self.each_core()).flat_map(of).collect()
     }
 
     /// Radius of the other side, zero of a plane.
     fn other_radius(&self) -> f64 {
         match &self.side {
             ContactSide::Plane { .. } => 0.0,
-            ContactSide::Sphere(other) => other.radius,
+            ContactSide::Shape(other) => other.radius,
         }
     }
 
     /// The law on a surface.
     fn law(&self, surface: Surface) -> ContactLaw {
-        let (a, b) = (self.sphere.radius, self.other_radius());
+        let (a, b) = (self.round.radius, self.other_radius());
         let radius = match surface {
             Surface::Sphere => a * b / (a + b),
             Surface::Plane(_) | Surface::MovingPlane => a,
@@ -274,26 +162,50 @@ impl Contact {
     }
 
     /// The law in the reference configuration, in the ground frame.
-    fn law_at_reference(&self) -> ContactLaw {
+    pub(super) fn law_at_reference(&self) -> ContactLaw {
         self.law(match self.side {
             ContactSide::Plane { normal, .. } => Surface::Plane(normal),
-            ContactSide::Sphere(_) => Surface::Sphere,
+            ContactSide::Shape(_) => Surface::Sphere,
         })
+    }
+
+    /// Overlap and normal force in the reference configuration, at rest.
+    fn touch_at_reference(&self) -> Touch {
+        let (law, span) = (
+            self.law_at_reference(),
+            self.round.centre.at - self.origin().at,
+        );
+        let still = [Vector3::zeros(); 5];
+        match self.cores() {
+            Some(cores) => {
+                let axes = self.axes().into_iter().map(|(_, axis)| axis);
+                let at: Vec<Vector3<f64>> = [span].into_iter().chain(axes).collect();
+                cores.touch(&law, &at, &still)
+            }
+            None => law.touch([[span, Vector3::zeros()], [Vector3::zeros(); 2]]),
+        }
     }
 
     /// The normal force with the vectors that it reads; `None` where no side moves.
     pub(crate) fn reading(&self, terms: &mut Terms<'_>) -> Option<ContactReading> {
-        let span = terms.span(self.origin(), &self.sphere.centre)?;
+        let span = terms.span(self.origin(), &self.round.centre)?;
         let normal = self.turning_normal(terms);
+        let axes = self.axes().into_iter().map(|(end, axis)| {
+            let axis = terms.direction(&end, &axis);
+            terms.vector(axis)
+        });
+        let axes = axes.collect();
         Some(ContactReading {
             name: self.name.clone(),
             law: self.law(match self.side {
                 ContactSide::Plane { .. } if normal.is_some() => Surface::MovingPlane,
                 ContactSide::Plane { normal, .. } => Surface::Plane(normal),
-                ContactSide::Sphere(_) => Surface::Sphere,
+                ContactSide::Shape(_) => Surface::Sphere,
             }),
             span,
             normal,
+            cores: self.cores(),
+            axes,
             friction: None,
             bristle: None,
         })
@@ -306,7 +218,7 @@ impl Contact {
                 let normal = terms.direction(at, normal);
                 Some(terms.vector(normal))
             }
-            ContactSide::Plane { .. } | ContactSide::Sphere(_) => None,
+            ContactSide::Plane { .. } | ContactSide::Shape(_) => None,
         }
     }
 
@@ -315,27 +227,51 @@ impl Contact {
         let (name, law) = (&self.name, reading.law);
         let call = [DAMPING, "restitution of"];
         let (read, damping) = (reading.normal_vectors(), ContactDamping(law));
-        match read[..] {
+        match (reading.cores, read.len()) {
             _ if law.damping == 0.0 => {
                 terms.without(
                     DAMPING,
                     "no contact that moves names a restitution below one",
                 );
             }
-            [_] => add::<_, 9, 3>(call, name, damping, &read, terms),
-            _ => add::<_, 18, 6>(call, name, damping, &read, terms),
+            (Some(cores), count) => {
+                let damping = OfCores { of: damping, cores };
+                match count {
+                    2 => add::<_, 18, 6>(call, name, damping, &read, terms),
+                    3 => add::<_, 27, 9>(call, name, damping, &read, terms),
+                    4 => add::<_, 36, 12>(call, name, damping, &read, terms),
+                    _ => add::<_, 45, 15>(call, name, damping, &read, terms),
+                }
+            }
+            (None, 1) => add::<_, 9, 3>(call, name, damping, &read, terms),
+            (None, _) => add::<_, 18, 6>(call, name, damping, &read, terms),
         }
         let Some(coefficient) = self.friction else {
             return terms.without(FRICTION, "no contact that moves names a friction");
         };
         let (friction, vectors) = self.friction_law(reading, coefficient, terms);
+        match reading.cores {
+            Some(cores) => self.add_core_friction(friction, cores, &vectors, terms),
+            None => self.add_friction(friction, &vectors, reading, terms),
+        }
+        reading.friction = Some((friction, vectors));
+    }
+
+    /// Adds friction between spheres or on a plane.
+    fn add_friction(
+        &self,
+        friction: ContactFriction,
+        vectors: &[usize],
+        reading: &mut ContactReading,
+        terms: &mut Terms<'_>,
+    ) {
+        let (name, call) = (&self.name, [FRICTION, "friction of"]);
         let bristles = terms.bristles.get(name).cloned();
-        let call = [FRICTION, "friction of"];
         match (self.stick.zip(bristles), vectors.len()) {
             (Some((displacement, coordinates)), count) => {
-                let bristle = terms.vector(self.bristle(coordinates, law.surface));
+                let bristle = terms.vector(self.bristle(coordinates, reading.law.surface));
                 reading.bristle = Some(bristle);
-                let read = [&vectors[..], &[bristle]].concat();
+                let read = [vectors, &[bristle]].concat();
                 let sticking = StickingFriction {
                     friction,
                     displacement,
@@ -346,11 +282,33 @@ impl Contact {
                     _ => add::<_, 72, 24>(call, name, sticking, &read, terms),
                 }
             }
-            (None, 1) => add::<_, 9, 3>(call, name, friction, &vectors, terms),
-            (None, 4) => add::<_, 36, 12>(call, name, friction, &vectors, terms),
-            (None, _) => add::<_, 63, 21>(call, name, friction, &vectors, terms),
+            (None, 1) => add::<_, 9, 3>(call, name, friction, vectors, terms),
+            (None, 4) => add::<_, 36, 12>(call, name, friction, vectors, terms),
+            (None, _) => add::<_, 63, 21>(call, name, friction, vectors, terms),
         }
-        reading.friction = Some((friction, vectors));
+    }
+
+    /// Adds friction between shapes with cores.
+    fn add_core_friction(
+        &self,
+        friction: ContactFriction,
+        cores: Cores,
+        vectors: &[usize],
+        terms: &mut Terms<'_>,
+    ) {
+        /// Friction of a form of `C` vectors.
+        fn of<const C: usize>(friction: ContactFriction, cores: Cores) -> CoreFriction<C> {
+            CoreFriction { friction, cores }
+        }
+        let (name, call) = (&self.name, [FRICTION, "friction of"]);
+        match (self.axes().len(), vectors.len()) {
+            (1, 4) => add::<_, 36, 12>(call, name, of::<2>(friction, cores), vectors, terms),
+            (1, _) => add::<_, 63, 21>(call, name, of::<2>(friction, cores), vectors, terms),
+            (2, _) => add::<_, 63, 21>(call, name, of::<3>(friction, cores), vectors, terms),
+            (3, 4) => add::<_, 36, 12>(call, name, of::<4>(friction, cores), vectors, terms),
+            (3, _) => add::<_, 63, 21>(call, name, of::<4>(friction, cores), vectors, terms),
+            (_, _) => add::<_, 63, 21>(call, name, of::<5>(friction, cores), vectors, terms),
+        }
     }
 
     /// The formula of friction and the vectors that it reads.
@@ -360,18 +318,23 @@ impl Contact {
         coefficient: f64,
         terms: &mut Terms<'_>,
     ) -> (ContactFriction, Vec<usize>) {
-        let (mut vectors, mut spheres) = (vec![reading.span], self.spheres());
+        let mut vectors = vec![reading.span];
         if let (ContactSide::Plane { at, normal }, Some(turning)) = (&self.side, reading.normal) {
             let tangents = triad(normal).map(|tangent| terms.direction(at, &tangent));
             vectors.extend(tangents.map(|tangent| terms.vector(tangent)));
             vectors.push(turning);
         }
-        let mut radii = [0.0; 2];
-        spheres.retain(|one| one.radius > 0.0 && terms.carrier(&one.centre).is_some());
-        for (sphere, radius) in spheres.iter().zip(&mut radii) {
-            *radius = sphere.radius;
-            let axes = [Vector3::x(), Vector3::y(), Vector3::z()];
-            let directors = axes.map(|axis| terms.direction(&sphere.centre, &axis));
+        let (mut radii, mut count) = ([0.0; 2], 0);
+        for (shape, core) in self.shapes().into_iter().zip(self.each_core()) {
+            let turns = shape.radius > 0.0 && terms.carrier(&shape.centre).is_some();
+            if core.is_none() && !turns {
+                continue;
+            }
+            radii[count] = shape.radius;
+            count += 1;
+            let ground = [Vector3::x(), Vector3::y(), Vector3::z()];
+            let axes = core.map_or(ground, |core| core.directions);
+            let directors = axes.map(|axis| terms.direction(&shape.centre, &axis));
             vectors.extend(directors.map(|director| terms.vector(director)));
         }
         let friction = ContactFriction {
@@ -383,31 +346,51 @@ impl Contact {
         (friction, vectors)
     }
 
-    fn check_spheres(&self) -> Result<(), Fault> {
-        not_negative("sphere.radius", self.sphere.radius)?;
-        let mut spheres = vec![("sphere.radius", self.sphere.radius)];
+    fn check_shapes(&self) -> Result<(), Fault> {
+        self.round.check("sphere")?;
+        let mut shapes = vec![("sphere.radius", self.round)];
+        let [round, core] = self.each_core();
+        let axes = round.as_ref().map_or(0, |core| core.half_lengths.len());
+        refuse!(if axes > 1, Key("sphere");
+            found "a box", expected "a point, a sphere or a capsule, as boxes do not touch each other");
         match &self.side {
             ContactSide::Plane { normal, .. } => {
                 let is_unit = (normal.norm() - 1.0).abs() < 1e-9;
                 refuse!(unless is_unit, Key("plane.normal");
                     value format!("{:?}", normal.as_slice()), expected DIRECTION);
+                refuse!(if axes > 0, Key("sphere");
+                    found "a capsule on a plane", expected "a contact for each of its ends");
             }
-            ContactSide::Sphere(other) => {
-                not_negative("other.radius", other.radius)?;
-                spheres.push(("other.radius", other.radius));
-                refuse!(if self.sphere.radius + other.radius == 0.0, Key("other.radius");
-                    found "two points, which do not touch", expected "a positive radius of one of both spheres");
+            ContactSide::Shape(other) => {
+                other.check("other")?;
+                shapes.push(("other.radius", *other));
+                refuse!(if self.round.radius + other.radius == 0.0, Key("other.radius");
+                    found "no radius of either side", expected "a positive radius of one of both, as points and edges do not touch");
+                refuse!(if axes > 0 && core.is_none(), Key("other");
+                    found "a sphere", expected "a capsule or a box, as a sphere that touches a capsule is the round side");
+                let deepest = DEEPEST * self.law_at_reference().distance;
+                let is_apart =
+                    self.cores().is_none() || self.touch_at_reference().overlap < deepest;
+                refuse!(unless is_apart, Key("sphere");
+                    found "a shape whose core meets that of the other one", expected "cores apart");
             }
         }
         if let ContactElasticLaw::Hertz(_) = self.elasticity {
-            for (key, radius) in spheres {
-                refuse!(if radius == 0.0, Key(key);
+            for (key, shape) in shapes {
+                refuse!(if shape.core().is_some(), Key("hertz");
+                    found "the law of spheres", expected "a \"stiffness\" of a capsule or a box");
+                refuse!(if shape.radius == 0.0, Key(key);
                     found "a point", expected "a positive radius, as the law of Hertz reads it");
             }
         }
+        refuse!(if self.stick.is_some() && self.cores().is_some(), Key("stick");
+            found "a capsule or a box that sticks", expected "friction without it, which points and spheres have");
         Ok(())
     }
 }
+
+/// Overlap of shapes beyond which their cores are said to meet, in distances of the cores in touch.
+const DEEPEST: f64 = 0.9;
 
 /// Adds an element that reads vectors: an energy at their midpoints, a virtual work at variations, midpoints and rates.
 fn add<E: Energy<M> + 'static, const M: usize, const NV: usize>(
@@ -430,23 +413,6 @@ fn add<E: Energy<M> + 'static, const M: usize, const NV: usize>(
     terms.add(call[0], call[1], name, element);
 }
 
-/// Segments of a circle of an outline.
-const SEGMENTS: usize = 24;
-
-/// Three great circles about the axes in one line, a quarter of the first one twice.
-fn circles(radius: f64) -> Vec<Vector3<f64>> {
-    let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
-    let arc = move |[a, b]: [Vector3<f64>; 2], quarters: usize| {
-        let angle = |k: usize| std::f64::consts::TAU * k as f64 / SEGMENTS as f64;
-        let at = move |k: usize| (a * angle(k).cos() + b * angle(k).sin()) * radius;
-        (0..=quarters * SEGMENTS / 4).map(at)
-    };
-    arc([x, z], 4)
-        .chain(arc([x, y], 5))
-        .chain(arc([y, z], 4))
-        .collect()
-}
-
 impl Component for Contact {
     fn name(&self) -> &str {
         &self.name
@@ -459,9 +425,9 @@ impl Component for Contact {
     fn outlines(&self) -> Vec<Vec<Attachment>> {
         let mut lines = Vec::new();
         if let ContactSide::Plane { at, normal } = &self.side {
-            let along = self.sphere.centre.at - at.at;
+            let along = self.round.centre.at - at.at;
             let foot = along - normal * normal.dot(&along);
-            let half = (foot.norm() + 2.0 * self.sphere.radius).max(0.5 * along.norm());
+            let half = (foot.norm() + 2.0 * self.round.radius).max(0.5 * along.norm());
             let corner = |[a, b]: [f64; 2]| {
                 let [first, second] = triad(normal);
                 first * (a * half) + second * (b * half)
@@ -475,8 +441,8 @@ impl Component for Contact {
             ];
             lines.push((*at, corners.map(corner).to_vec()));
         }
-        let spheres = self.spheres();
-        lines.extend(spheres.iter().map(|one| (one.centre, circles(one.radius))));
+        let shapes = self.shapes().into_iter();
+        lines.extend(shapes.map(|shape| (shape.centre, shape.outline())));
         let placed = |(point, line): (Attachment, Vec<Vector3<f64>>)| {
             let at = |step: Vector3<f64>| Attachment {
                 at: point.at + step,
@@ -488,7 +454,7 @@ impl Component for Contact {
     }
 
     fn check(&self) -> Result<(), Fault> {
-        self.check_spheres()?;
+        self.check_shapes()?;
         match &self.elasticity {
             ContactElasticLaw::Linear(stiffness) => positive("stiffness", *stiffness)?,
             ContactElasticLaw::Hertz(solids) => {
@@ -515,11 +481,7 @@ impl Component for Contact {
     }
 
     fn is_prestressed(&self) -> bool {
-        let span = self.sphere.centre.at - self.origin().at;
-        let touch = self
-            .law_at_reference()
-            .touch([[span, Vector3::zeros()], [Vector3::zeros(); 2]]);
-        touch.overlap > -0.5 * self.smoothing
+        self.touch_at_reference().overlap > -0.5 * self.smoothing
     }
 
     fn build(&self, terms: &mut Terms<'_>) {
@@ -528,9 +490,19 @@ impl Component for Contact {
         };
         let call = [ELASTICITY, "stiffness of"];
         let (read, energy) = (reading.normal_vectors(), ContactElasticity(reading.law));
-        match read[..] {
-            [_] => add::<_, 3, 1>(call, &self.name, energy, &read, terms),
-            _ => add::<_, 6, 2>(call, &self.name, energy, &read, terms),
+        let name = &self.name;
+        match (reading.cores, read.len()) {
+            (Some(cores), count) => {
+                let energy = OfCores { of: energy, cores };
+                match count {
+                    2 => add::<_, 6, 2>(call, name, energy, &read, terms),
+                    3 => add::<_, 9, 3>(call, name, energy, &read, terms),
+                    4 => add::<_, 12, 4>(call, name, energy, &read, terms),
+                    _ => add::<_, 15, 5>(call, name, energy, &read, terms),
+                }
+            }
+            (None, 1) => add::<_, 3, 1>(call, name, energy, &read, terms),
+            (None, _) => add::<_, 6, 2>(call, name, energy, &read, terms),
         }
         match terms.is_of_motion() {
             true => self.add_works(&mut reading, terms),

@@ -4,19 +4,22 @@ pub(super) mod body;
 pub(super) mod circuit;
 pub(super) mod component;
 pub(super) mod contact;
+pub(super) mod contact_law;
+pub(super) mod contact_shape;
 pub(super) mod load;
 pub(super) mod muscle;
 pub(super) mod muscle_constants;
+mod soft_contact;
 mod spring;
 mod tendon;
 
 pub use component::{Component, Other};
-pub use contact::{
-    Contact, ContactElasticLaw, ContactSide, ContactSphere, ElasticSolid, Restitution, SLIP_SPEED,
-    SoftContact,
-};
+pub use contact::{Contact, ContactSide};
+pub use contact_law::{ContactElasticLaw, ElasticSolid, Restitution, SLIP_SPEED};
+pub use contact_shape::ContactShape;
 pub use load::{BlockLoad, Faces, Load, LoadPlace};
 pub use muscle_constants::capacitance;
+pub use soft_contact::SoftContact;
 pub use spring::Spring;
 pub use tendon::Tendon;
 

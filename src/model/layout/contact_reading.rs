@@ -1,6 +1,6 @@
 //! Contacts that act, read at vectors and their rates: overlap, forces and slip.
 
-use crate::energy::{ContactFriction, ContactLaw, Touch};
+use crate::energy::{ContactFriction, ContactLaw, Cores, Touch};
 use crate::math::Vector;
 
 /// A contact that is read at times: a placed configuration with rates of the vectors.
@@ -14,6 +14,10 @@ pub struct ContactReading {
     pub(crate) span: usize,
     /// Normal of a plane of a body.
     pub(crate) normal: Option<usize>,
+    /// Cores of shapes that are no points.
+    pub(crate) cores: Option<Cores>,
+    /// Their axes.
+    pub(crate) axes: Vec<usize>,
     /// Friction with the vectors that it reads.
     pub(crate) friction: Option<(ContactFriction, Vec<usize>)>,
     /// Elastic displacement of one that sticks, over its greatest length.
@@ -23,7 +27,8 @@ pub struct ContactReading {
 impl ContactReading {
     /// The vectors that the normal force reads.
     pub(crate) fn normal_vectors(&self) -> Vec<usize> {
-        [self.span].into_iter().chain(self.normal).collect()
+        let first = [self.span].into_iter().chain(self.normal);
+        first.chain(self.axes.iter().copied()).collect()
     }
 
     /// Names and units of its values.
@@ -42,6 +47,11 @@ impl ContactReading {
 
     /// Overlap and normal force at vectors and their rates.
     pub fn touch(&self, [x, rates]: [&[Vector]; 2]) -> Touch {
+        if let Some(cores) = &self.cores {
+            let vectors = self.normal_vectors();
+            let [x, rates] = [x, rates].map(|of| read(of, &vectors));
+            return cores.touch(&self.law, &x, &rates);
+        }
         let ends = [x, rates].map(|of| {
             [
                 of[self.span],
@@ -55,10 +65,18 @@ impl ContactReading {
     pub fn values(&self, at: [&[Vector]; 2]) -> Vec<f64> {
         let Touch { overlap, force } = self.touch(at);
         let friction = self.friction.iter().flat_map(|(friction, vectors)| {
-            let read = |all: &[Vector]| vectors.iter().map(|&v| all[v]).collect::<Vec<_>>();
+            let [mut x, mut rates] = at.map(|of| read(of, vectors));
+            if let Some(cores) = &self.cores {
+                [x[0], rates[0]] = cores.span(&x, [&x, &rates]);
+            }
             let bristle = self.bristle.map(|v| at[0][v]);
-            friction.of_rates(&read(at[0]), &read(at[1]), bristle)
+            friction.of_rates(&x, &rates, force, bristle)
         });
         [force, -overlap].into_iter().chain(friction).collect()
     }
+}
+
+/// Vectors of a list by their numbers.
+fn read(all: &[Vector], vectors: &[usize]) -> Vec<Vector> {
+    vectors.iter().map(|&v| all[v]).collect()
 }

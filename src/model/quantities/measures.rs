@@ -2,8 +2,8 @@
 
 use crate::element::FieldPoint;
 use crate::energy::{
-    Angle, AngleStep, ContactForce, ContactGap, Energy, Law, Multiple, OutsideBox, PeakExcess,
-    PositionComponent, Projection, ProjectionStep, SquaredDistance, law,
+    Angle, AngleStep, ContactForce, ContactGap, Cores, Energy, Law, Multiple, OfCores, OutsideBox,
+    PeakExcess, PositionComponent, Projection, ProjectionStep, SquaredDistance, law,
 };
 use crate::functional::{
     Curved, Element, ElementField, Group, Kernel, LawElement, Measure, Stencil, Term, VectorArg,
@@ -104,6 +104,20 @@ pub(super) struct Reading<'k, 'v> {
 /// Measure of an element.
 fn alone<K: Kernel>(element: K) -> Box<dyn Measure> {
     Box::new(Group::intervals("measure", 1.0, vec![element]))
+}
+
+/// A list of a known length.
+fn array<const N: usize>(list: &[usize]) -> [usize; N] {
+    std::array::from_fn(|i| list[i])
+}
+
+/// Midpoints of vectors, then their rates.
+fn read_twice<const N: usize>(vectors: &[usize]) -> [VectorArg; N] {
+    let count = vectors.len();
+    std::array::from_fn(|i| match i < count {
+        true => Stencil::Mid.of(vectors[i]),
+        false => Stencil::Rate.of(vectors[i - count]),
+    })
 }
 
 /// A measure; none where nothing of the model can change the quantity.
@@ -232,6 +246,9 @@ impl<'k> Reading<'k, '_> {
         let reading = contact.reading(&mut terms)?;
         let (law, unit) = (reading.law, self.quantity.unit);
         let force = ContactForce { law, unit };
+        if let Some(cores) = reading.cores {
+            return self.of_cored_contact(force, cores, &reading.normal_vectors());
+        }
         let both = [Stencil::Mid, Stencil::Rate];
         match (&self.quantity.what, &reading.normal_vectors()[..]) {
             (What::Gap(_), &[r]) => self.instant::<_, 3, 1>(ContactGap(law), [r]),
@@ -242,6 +259,22 @@ impl<'k> Reading<'k, '_> {
                 self.formula::<_, 12, 4, 0>(force, [a, b, c, d], [])
             }
             _ => None,
+        }
+    }
+
+    /// Gap or normal force of a contact between shapes with cores.
+    fn of_cored_contact(&mut self, of: ContactForce, cores: Cores, vectors: &[usize]) -> Made {
+        let gap = ContactGap(of.law);
+        let (gap, force) = (OfCores { of: gap, cores }, OfCores { of, cores });
+        match (&self.quantity.what, vectors.len()) {
+            (What::Gap(_), 2) => self.instant::<_, 6, 2>(gap, array(vectors)),
+            (What::Gap(_), 3) => self.instant::<_, 9, 3>(gap, array(vectors)),
+            (What::Gap(_), 4) => self.instant::<_, 12, 4>(gap, array(vectors)),
+            (What::Gap(_), _) => self.instant::<_, 15, 5>(gap, array(vectors)),
+            (_, 2) => self.formula::<_, 12, 4, 0>(force, read_twice(vectors), []),
+            (_, 3) => self.formula::<_, 18, 6, 0>(force, read_twice(vectors), []),
+            (_, 4) => self.formula::<_, 24, 8, 0>(force, read_twice(vectors), []),
+            (_, _) => self.formula::<_, 30, 10, 0>(force, read_twice(vectors), []),
         }
     }
 
