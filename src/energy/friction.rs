@@ -438,6 +438,8 @@ pub struct StickingFriction {
     pub friction: ContactFriction,
     /// Greatest elastic displacement in mm.
     pub displacement: f64,
+    /// Time τ in ms of the damping of its vibrations: the force is that of z + τ ż.
+    pub damping: f64,
 }
 
 /// Length of z up to which it does not slip.
@@ -449,15 +451,21 @@ impl StickingFriction {
         let (mut work, normal) = (OfDotProducts::new(vectors), of.normal_of::<7>());
         let [varied, bristle, rate] = [0, 1, 2].map(|reading| BRISTLE + reading);
         let [q, along]: [Product<'_>; 2] = [&[[PLACE, normal]], &[[VELOCITY, normal]]];
-        let force: [Product<'_>; 2] = [&[[VIRTUAL, bristle]], &[[VIRTUAL, normal]]];
-        work.add(
-            force,
-            [q, along, &[[bristle, normal]]],
-            |[q, along, lift]| {
-                let limit = of.limit(&q, &along);
-                [limit, -(limit * of.part(&q, lift))]
-            },
-        );
+        let force: [Product<'_>; 3] = [
+            &[[VIRTUAL, bristle]],
+            &[[VIRTUAL, rate]],
+            &[[VIRTUAL, normal]],
+        ];
+        let products = [q, along, &[[bristle, normal]], &[[rate, normal]]];
+        work.add(force, products, |[q, along, lift, lift_rate]| {
+            let limit = of.limit(&q, &along);
+            let lift = lift + lift_rate.scaled(self.damping);
+            [
+                limit,
+                limit.scaled(self.damping),
+                -(limit * of.part(&q, lift)),
+            ]
+        });
         let equation: [Product<'_>; 4] = [
             &[[varied, rate]],
             &[[varied, VELOCITY]],

@@ -228,7 +228,8 @@ impl WrittenAgain for StickingFriction {
         let back = slips * speed / self.displacement;
         let equation = polarised(varied.0, lag) + polarised(varied.0, at.0) * back;
         let stiffness = coefficient * law.stiffness * self.displacement.powf(law.exponent + 1.0);
-        force * growth * polarised(at.0, virtual_slip) * -coefficient - equation * stiffness
+        let damped = sum(at.0, rates.0, self.damping);
+        force * growth * polarised(damped, virtual_slip) * -coefficient - equation * stiffness
     }
 }
 
@@ -301,6 +302,7 @@ fn friction_has_the_derivatives_of_its_naive_formula() {
             let sticking = StickingFriction {
                 friction,
                 displacement: 0.8,
+                damping: 0.6,
             };
             if surface != Surface::MovingPlane {
                 law::<_, 18>("sticking", &sticking, 0.45, 0.65);
@@ -325,19 +327,35 @@ fn what_slips_takes_energy() {
         let sticking = StickingFriction {
             friction,
             displacement: 0.8,
+            damping: 0.6,
         };
         for _ in 0..100 {
-            // Variations are zero, and the rate of z is sought.
-            let p = SVector::<f64, 18>::from_fn(|i, _| match i {
+            // Variations are zero. The equation is that of z; its part beside the rate, which is its residual at no rate, tells the rate.
+            let mut p = SVector::<f64, 18>::from_fn(|i, _| match i {
                 ..6 | 15.. => 0.0,
                 _ => random.between(-1.2, 1.2),
             });
-            let jet: Jet<18, 1> = jet_of(&sticking, &p, &SVector::zeros());
-            let force: Vector3<f64> = jet.gradient.fixed_rows::<3>(0).into();
-            let equation: Vector3<f64> = jet.gradient.fixed_rows::<3>(3).into();
-            let velocity: Vector3<f64> = p.fixed_rows::<3>(12).into();
+            let bristle: Vector3<f64> = p.fixed_rows::<3>(9).into();
+            p.fixed_rows_mut::<3>(9)
+                .copy_from(&(bristle / bristle.norm().max(1.0)));
+            let slopes = |p: &SVector<f64, 18>| {
+                let jet: Jet<18, 1> = jet_of(&sticking, p, &SVector::zeros());
+                let of = |i: usize| -> Vector3<f64> { jet.gradient.fixed_rows::<3>(i).into() };
+                [of(0), of(3)]
+            };
             let scale = 0.3 * law.stiffness * 0.8_f64.powf(law.exponent);
-            let power = force.dot(&(velocity - equation / scale));
+            let rate = slopes(&p)[1] / (0.8 * scale);
+            p.fixed_rows_mut::<3>(15).copy_from(&rate);
+            let [force, equation] = slopes(&p);
+            assert!(equation.norm() < 1e-12, "{equation}");
+            // What comes in beside what the displacement stores, of which the force without its damping is the slope.
+            let undamped = slopes(&{
+                let mut still = p;
+                still.fixed_rows_mut::<3>(15).fill(0.0);
+                still
+            })[0];
+            let velocity: Vector3<f64> = p.fixed_rows::<3>(12).into();
+            let power = force.dot(&velocity) - undamped.dot(&(rate * 0.8));
             assert!(power < 1e-14, "{power}");
             largest = largest.max(-power);
         }

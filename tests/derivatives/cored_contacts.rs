@@ -222,7 +222,7 @@ macro_rules! normal_law {
         for of in laws(Surface::Sphere) {
             let cores = cores($vectors, of.distance);
             // Many names are many points, some of which lie at the ends of axes.
-            for number in 0..4 {
+            for number in 0..2 {
                 let name = format!("cores of {} vectors, {number}", $vectors);
                 let elastic = OfCores {
                     of: ContactElasticity(of),

@@ -270,11 +270,18 @@ impl Contact {
         match (self.stick.zip(bristles), vectors.len()) {
             (Some((displacement, coordinates)), count) => {
                 let bristle = terms.vector(self.bristle(coordinates, reading.law.surface));
-                reading.bristle = Some(bristle);
+                // Half of critical damping, of a body under its own weight.
+                let weight = friction.coefficient * terms.gravity_size();
+                let damping = match weight > 0.0 {
+                    true => (displacement / weight).sqrt(),
+                    false => 0.0,
+                };
+                reading.bristle = Some((bristle, damping));
                 let read = [vectors, &[bristle]].concat();
                 let sticking = StickingFriction {
                     friction,
                     displacement,
+                    damping,
                 };
                 match count {
                     1 => add::<_, 18, 6>(call, name, sticking, &read, terms),

@@ -20,8 +20,8 @@ pub struct ContactReading {
     pub(crate) axes: Vec<usize>,
     /// Friction with the vectors that it reads.
     pub(crate) friction: Option<(ContactFriction, Vec<usize>)>,
-    /// Elastic displacement of one that sticks, over its greatest length.
-    pub(crate) bristle: Option<usize>,
+    /// Elastic displacement of one that sticks, over its greatest length, with the time of its damping in ms.
+    pub(crate) bristle: Option<(usize, f64)>,
 }
 
 impl ContactReading {
@@ -69,7 +69,7 @@ impl ContactReading {
             if let Some(cores) = &self.cores {
                 [x[0], rates[0]] = cores.span(&x, [&x, &rates]);
             }
-            let bristle = self.bristle.map(|v| at[0][v]);
+            let bristle = self.bristle.map(|(v, time)| at[0][v] + at[1][v] * time);
             friction.of_rates(&x, &rates, force, bristle)
         });
         [force, -overlap].into_iter().chain(friction).collect()

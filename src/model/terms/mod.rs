@@ -284,6 +284,11 @@ impl<'a> Terms<'a> {
         Some([0, 1, 2].map(|axis| read.constant(Constant::Gravity(axis), g[axis])))
     }
 
+    /// Size of gravity in mm/ms² as it is written; zero where there is none.
+    pub(super) fn gravity_size(&self) -> f64 {
+        self.gravity.unwrap_or_default().norm()
+    }
+
     /// Adds the weight of a mass in g at a point, where there is gravity; of what the mass follows was `read`.
     pub(super) fn weigh(&mut self, point: &MaterialVector, mass: &Coefficient, read: Read) {
         if self.gravity.is_some() {
