@@ -179,7 +179,7 @@ impl ContactFriction {
         turned([v, w]).unwrap_or_default() + turned([w, v]).unwrap_or_default().transpose()
     }
 
-    /// Sizes of friction in N and slip in mm/ms at vectors and rates, at a normal force in N and the vector z of friction that sticks.
+    /// Sizes of friction in N and slip in mm/ms at vectors and rates, at a normal force in N and the vector z + τ (1 − α) ż of friction that sticks.
     pub fn of_rates(
         &self,
         x: &[Vector3<f64>],
@@ -438,14 +438,34 @@ pub struct StickingFriction {
     pub friction: ContactFriction,
     /// Greatest elastic displacement in mm.
     pub displacement: f64,
-    /// Time τ in ms of the damping of its vibrations: the force is that of z + τ ż.
+    /// Time τ in ms of the damping of its vibrations: the force is that of z + τ (1 − α) ż.
     pub damping: f64,
 }
 
 /// Length of z up to which it does not slip.
 const ELASTIC: f64 = 0.9;
 
+/// Part α of the velocity that slips, with two derivatives, at the square of z.
+fn part_that_slips(square: f64) -> [f64; 3] {
+    let middle = 0.5 * (1.0 + ELASTIC * ELASTIC);
+    let [_, part, first, second] = ramp(square - middle, 1.0 - ELASTIC * ELASTIC);
+    [part, first, second]
+}
+
+/// The same of half of the square.
+fn slips<const D: usize>(half: &Jet<D, 2>) -> Jet<D, 2> {
+    let square = half.scaled(2.0);
+    let [part, first, second] = part_that_slips(square.value);
+    square.map([part, first, second, 0.0])
+}
+
 impl StickingFriction {
+    /// The vector z + τ (1 − α) ż at z and ż with a time τ in ms.
+    pub fn damped([z, rate]: [Vector3<f64>; 2], time: f64) -> Vector3<f64> {
+        let [slips, ..] = part_that_slips(z.norm_squared());
+        z + rate * (time * (1.0 - slips))
+    }
+
     fn work(&self, vectors: [Vector3<f64>; 7]) -> OfDotProducts<7> {
         let (of, length) = (&self.friction, self.displacement);
         let (mut work, normal) = (OfDotProducts::new(vectors), of.normal_of::<7>());
@@ -456,15 +476,18 @@ impl StickingFriction {
             &[[VIRTUAL, rate]],
             &[[VIRTUAL, normal]],
         ];
-        let products = [q, along, &[[bristle, normal]], &[[rate, normal]]];
-        work.add(force, products, |[q, along, lift, lift_rate]| {
+        let products: [Product<'_>; 5] = [
+            q,
+            along,
+            &[[bristle, normal]],
+            &[[rate, normal]],
+            &[[bristle, bristle]],
+        ];
+        work.add(force, products, |[q, along, lift, lift_rate, stretch]| {
             let limit = of.limit(&q, &along);
-            let lift = lift + lift_rate.scaled(self.damping);
-            [
-                limit,
-                limit.scaled(self.damping),
-                -(limit * of.part(&q, lift)),
-            ]
+            let time = slips(&stretch).shifted(-1.0).scaled(-self.damping);
+            let lift = lift + time * lift_rate;
+            [limit, limit * time, -(limit * of.part(&q, lift))]
         });
         let equation: [Product<'_>; 4] = [
             &[[varied, rate]],
@@ -477,16 +500,11 @@ impl StickingFriction {
         work.add(equation, products, |[q, along, half, stretch]| {
             let part = of.part(&q, along);
             let speed = of.speed([half, along, part]);
-            let square = stretch
-                .scaled(2.0)
-                .shifted(-0.5 * (1.0 + ELASTIC * ELASTIC));
-            let [_, slip, first, second] = ramp(square.value, 1.0 - ELASTIC * ELASTIC);
-            let slip = square.map([slip, first, second, 0.0]);
             [
                 Jet::constant(-length),
                 Jet::constant(1.0),
                 -part,
-                -(slip * speed),
+                -(slips(&stretch) * speed),
             ]
             .map(|factor| factor.scaled(scale))
         });

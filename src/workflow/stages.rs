@@ -87,7 +87,7 @@ struct Way<'a, 'o> {
     before: Vec<SolverResult>,
     /// Number of stages that were solved.
     solved: usize,
-    /// What a solve found that was stopped.
+    /// The last iterate of a solve that was stopped.
     stopped: Option<Together>,
 }
 

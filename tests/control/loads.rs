@@ -97,7 +97,7 @@ fn least_effort_slides_a_mass_against_friction_that_sticks() {
     let floor = Contact::on_plane(centre, (GROUND, Y * 0.1, Y)).stiffness(10.0);
     let floor = floor.friction(0.5).slip_speed(0.02).stick(0.2);
     let mut floor = floor.named("floor");
-    floor.sphere.centre.body = Some(0);
+    floor.round.centre.body = Some(0);
     system.components.contacts.push(floor);
     let optimum = solved(&system, &control);
     assert_eq!(optimum.solution.status, Status::Solved);

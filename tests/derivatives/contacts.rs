@@ -228,7 +228,8 @@ impl WrittenAgain for StickingFriction {
         let back = slips * speed / self.displacement;
         let equation = polarised(varied.0, lag) + polarised(varied.0, at.0) * back;
         let stiffness = coefficient * law.stiffness * self.displacement.powf(law.exponent + 1.0);
-        let damped = sum(at.0, rates.0, self.damping);
+        let holds = (-slips + 1.0) * self.damping;
+        let damped: [D; 3] = std::array::from_fn(|i| at.0[i] + rates.0[i] * holds);
         force * growth * polarised(damped, virtual_slip) * -coefficient - equation * stiffness
     }
 }

@@ -1,6 +1,6 @@
 //! Contacts that act, read at vectors and their rates: overlap, forces and slip.
 
-use crate::energy::{ContactFriction, ContactLaw, Cores, Touch};
+use crate::energy::{ContactFriction, ContactLaw, Cores, StickingFriction, Touch};
 use crate::math::Vector;
 
 /// A contact that is read at times: a placed configuration with rates of the vectors.
@@ -69,7 +69,10 @@ impl ContactReading {
             if let Some(cores) = &self.cores {
                 [x[0], rates[0]] = cores.span(&x, [&x, &rates]);
             }
-            let bristle = self.bristle.map(|(v, time)| at[0][v] + at[1][v] * time);
+            let bristle = self.bristle.map(|(v, time)| {
+                let readings = [at[0][v], at[1][v]];
+                StickingFriction::damped(readings, time)
+            });
             friction.of_rates(&x, &rates, force, bristle)
         });
         [force, -overlap].into_iter().chain(friction).collect()
