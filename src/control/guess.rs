@@ -9,6 +9,7 @@ use crate::control::resample::Grids;
 use crate::coordinates::CoordinateMap;
 use crate::dynamics::{DiscreteTrajectory, simulate};
 use crate::model::{Coordinates, Graph, Model, Role};
+use crate::stop;
 use std::borrow::Cow;
 use std::error::Error;
 use std::fmt::Debug;
@@ -93,9 +94,17 @@ fn under_voltages(
         model.scalars(&voltages)
     };
     let start = &boundary.start;
-    let (mut discrete, _) = simulate(model, start, h, intervals, scalars, |_| {
-        ControlFlow::Continue(())
-    });
+    let (mut discrete, _) = simulate(
+        model,
+        start,
+        h,
+        intervals,
+        scalars,
+        |_| match stop::requested() {
+            true => ControlFlow::Break(()),
+            false => ControlFlow::Continue(()),
+        },
+    );
     // A simulation that ends early is held where it ended.
     while discrete.intervals() < intervals {
         discrete.z.push(discrete.z[discrete.z.len() - 1].clone());
