@@ -4,7 +4,7 @@
 //! arc, as long as the load is large relative to its largest size in the motion. Surface charges have none.
 
 use crate::model::Component;
-use crate::model::components::{BlockLoad, Load, LoadPlace};
+use crate::model::components::{BlockLoad, Contact, Load, LoadPlace};
 use crate::model::system::{Attachment, JointKind, System};
 use crate::report::Run;
 use crate::report::body::extent_points;
@@ -53,9 +53,15 @@ pub(super) fn ties<'a>(run: &Run<'a>, instants: &[usize]) -> Vec<MovingLine<'a>>
             places: instants.iter().map(line).collect(),
         }
     };
-    let components = run.system.components.iter();
+    let components = &run.system.components;
     let outlines = |one: &'a dyn Component| one.outlines().into_iter().map(move |line| (one, line));
-    components.flat_map(outlines).map(tie).collect()
+    let contacts = &components.contacts;
+    let planes = contacts.iter().filter_map(|one: &'a Contact| {
+        let line = one.plane_outline(contacts)?;
+        Some((one as &dyn Component, line))
+    });
+    let lines = components.iter().flat_map(outlines).chain(planes);
+    lines.map(tie).collect()
 }
 
 /// The arrows of loads that ever act at some instants, of each always as many points.

@@ -58,7 +58,7 @@ fn closest<D: DualNum<f64> + Copy>(x: &[[D; 3]], distance: f64) -> (D, Vec<D>) {
     let clamps = clamps(x.len(), distance);
     let products: Vec<D> = x[1..].iter().map(|axis| polarised(x[0], *axis)).collect();
     let mut form = squared_length(x[0]) * 0.5;
-    if x.len() % 2 == 0 {
+    if x.len().is_multiple_of(2) {
         for (y, clamp) in products.iter().zip(&clamps) {
             form -= rounded(*y, *clamp);
         }
@@ -189,8 +189,9 @@ fn rubbing<D: DualNum<f64> + Copy, const C: usize>(of: &CoreFriction<C>, p: &[D]
     let held = |motion: &[[D; 3]]| {
         let mut motion = motion.to_vec();
         for (foot, axis) in feet.iter().zip(axes) {
-            for c in 0..3 {
-                motion[0][c] = motion[0][c] - motion[*axis][c] * *foot;
+            let along = motion[*axis];
+            for (span, along) in motion[0].iter_mut().zip(along) {
+                *span -= along * *foot;
             }
         }
         motion

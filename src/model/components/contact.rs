@@ -353,6 +353,31 @@ impl Contact {
         (friction, vectors)
     }
 
+    /// A square on the plane of the contact, as large as all of these contacts with it need, of which the first draws it.
+    pub(crate) fn plane_outline(&self, contacts: &[Self]) -> Option<Vec<Attachment>> {
+        let ContactSide::Plane { at, normal } = &self.side else {
+            return None;
+        };
+        let alike = contacts.iter().filter(|one| one.side == self.side);
+        let is_first = |first: &Self| first.name == self.name;
+        alike.clone().next().filter(|first| is_first(first))?;
+        let reach = |one: &Self| {
+            let along = one.round.centre.at - at.at;
+            let foot = along - normal * normal.dot(&along);
+            (foot.norm() + 2.0 * one.round.radius).max(0.5 * along.norm())
+        };
+        let half = alike.map(reach).fold(0.0, f64::max);
+        let [first, second] = triad(normal).map(|tangent| tangent * half);
+        let corners = [
+            first + second,
+            second - first,
+            -first - second,
+            first - second,
+            first + second,
+        ];
+        Some(corners.map(|step| from(at, step)).to_vec())
+    }
+
     fn check_shapes(&self) -> Result<(), Fault> {
         self.round.check("sphere")?;
         let mut shapes = vec![("sphere.radius", self.round)];
@@ -396,6 +421,14 @@ impl Contact {
     }
 }
 
+/// The point of the body at a step from another one.
+fn from(point: &Attachment, step: Vector3<f64>) -> Attachment {
+    Attachment {
+        at: point.at + step,
+        ..*point
+    }
+}
+
 /// Overlap of shapes beyond which their cores are said to meet, in distances of the cores in touch.
 const DEEPEST: f64 = 0.9;
 
@@ -430,34 +463,12 @@ impl Component for Contact {
     }
 
     fn outlines(&self) -> Vec<Vec<Attachment>> {
-        let mut lines = Vec::new();
-        if let ContactSide::Plane { at, normal } = &self.side {
-            let along = self.round.centre.at - at.at;
-            let foot = along - normal * normal.dot(&along);
-            let half = (foot.norm() + 2.0 * self.round.radius).max(0.5 * along.norm());
-            let corner = |[a, b]: [f64; 2]| {
-                let [first, second] = triad(normal);
-                first * (a * half) + second * (b * half)
-            };
-            let corners = [
-                [1.0, 1.0],
-                [-1.0, 1.0],
-                [-1.0, -1.0],
-                [1.0, -1.0],
-                [1.0, 1.0],
-            ];
-            lines.push((*at, corners.map(corner).to_vec()));
-        }
         let shapes = self.shapes().into_iter();
-        lines.extend(shapes.map(|shape| (shape.centre, shape.outline())));
-        let placed = |(point, line): (Attachment, Vec<Vector3<f64>>)| {
-            let at = |step: Vector3<f64>| Attachment {
-                at: point.at + step,
-                ..point
-            };
-            line.into_iter().map(at).collect()
+        let line = |shape: ContactShape| {
+            let line = shape.outline().into_iter();
+            line.map(|step| from(&shape.centre, step)).collect()
         };
-        lines.into_iter().map(placed).collect()
+        shapes.map(line).collect()
     }
 
     fn check(&self) -> Result<(), Fault> {
