@@ -354,7 +354,7 @@ impl Contact {
     }
 
     /// A square on the plane of the contact, as large as all of these contacts with it need, of which the first draws it.
-    pub(crate) fn plane_outline(&self, contacts: &[Self]) -> Option<Vec<Attachment>> {
+    pub fn plane_outline(&self, contacts: &[Self]) -> Option<Vec<Attachment>> {
         let ContactSide::Plane { at, normal } = &self.side else {
             return None;
         };
