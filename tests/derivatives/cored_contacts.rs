@@ -53,6 +53,37 @@ fn foot<D: DualNum<f64> + Copy>(y: D, clamp: [f64; 3]) -> D {
     along([y], [y * 0.0 + 1.0], |y| rounded(y[0], clamp))
 }
 
+/// Excess of y over what follows from it, at the products of the span and the cosines of an axis with the others.
+fn excess<D: DualNum<f64> + Copy>(y: D, [products, cosines]: [&[D]; 2], clamps: &[[f64; 3]]) -> D {
+    let first = foot(y, clamps[0]);
+    let others = products[1..].iter().zip(cosines).zip(&clamps[1..]);
+    others.fold(y - products[0], |excess, ((product, cosine), clamp)| {
+        excess + *cosine * foot(*product - *cosine * first, *clamp)
+    })
+}
+
+/// The root of the excess by bisection, and its slope there.
+fn root<D: DualNum<f64> + Copy>(at: [&[D]; 2], clamps: &[[f64; 3]]) -> [f64; 2] {
+    let real = at.map(|list| list.iter().map(D::re).collect::<Vec<f64>>());
+    let excess = |y: f64| excess(y, [&real[0], &real[1]], clamps);
+    let [mut low, mut high] = [-3.0, 3.0];
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            break;
+        }
+        match excess(middle) > 0.0 {
+            true => high = middle,
+            false => low = middle,
+        }
+    }
+    let step = 1e-6;
+    [
+        low,
+        (excess(low + step) - excess(low - step)) / (2.0 * step),
+    ]
+}
+
 /// The form, and the feet on the axes, at the span and the axes.
 fn closest<D: DualNum<f64> + Copy>(x: &[[D; 3]], distance: f64) -> (D, Vec<D>) {
     let clamps = clamps(x.len(), distance);
@@ -66,39 +97,18 @@ fn closest<D: DualNum<f64> + Copy>(x: &[[D; 3]], distance: f64) -> (D, Vec<D>) {
         return (form, feet.map(|(y, clamp)| foot(*y, *clamp)).collect());
     }
     let cosines: Vec<D> = x[2..].iter().map(|axis| polarised(x[1], *axis)).collect();
+    let at = [&products[..], &cosines[..]];
+    let [root, slope] = root(at, &clamps);
+    let mut y = products[0] * 0.0 + root;
+    // An order of derivatives a step, and some digits of the slope.
+    for _ in 0..4 {
+        y -= excess(y, at, &clamps) * slope.recip();
+    }
     let others = |first: D| -> Vec<D> {
         let each = products[1..].iter().zip(&cosines);
-        each.map(|(product, cosine)| *product - *cosine * first)
-            .collect()
+        let other = each.map(|(product, cosine)| *product - *cosine * first);
+        other.collect()
     };
-    let excess = |y: D| {
-        let each = others(foot(y, clamps[0]));
-        let sum = each.iter().zip(&cosines).zip(&clamps[1..]);
-        sum.fold(y - products[0], |excess, ((other, cosine), clamp)| {
-            excess + *cosine * foot(*other, *clamp)
-        })
-    };
-    // The root by bisection, then an order of derivatives a step with the slope there.
-    let constant = |y: f64| products[0] * 0.0 + y;
-    let [mut low, mut high] = [-3.0, 3.0];
-    while high - low > 1e-16 {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            break;
-        }
-        match excess(constant(middle)).re() > 0.0 {
-            true => high = middle,
-            false => low = middle,
-        }
-    }
-    let root = low;
-    let step = 1e-6;
-    let [after, before] = [step, -step].map(|step| excess(constant(root + step)).re());
-    let slope = (after - before) / (2.0 * step);
-    let mut y = constant(root);
-    for _ in 0..8 {
-        y -= excess(y) * slope.recip();
-    }
     let first = foot(y, clamps[0]);
     let each = others(first);
     form -= rounded(y, clamps[0]);
