@@ -13,6 +13,7 @@ use signal_hook::consts::{SIGINT, SIGTERM};
 use signal_hook::flag;
 use std::cell::RefCell;
 use std::ffi::c_int;
+use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, LazyLock, Once, OnceLock};
 use std::time::{Duration, Instant};
@@ -28,6 +29,14 @@ thread_local! {
 #[must_use]
 pub fn requested() -> bool {
     have_asked() || REQUEST.with_borrow(StopRequest::is_made)
+}
+
+/// Goes on unless a stop was [`requested`].
+pub fn go_on() -> ControlFlow<()> {
+    match requested() {
+        true => ControlFlow::Break(()),
+        false => ControlFlow::Continue(()),
+    }
 }
 
 /// A request to one thread, made by another: it stops as at Ctrl-C.

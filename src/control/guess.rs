@@ -13,7 +13,6 @@ use crate::stop;
 use std::borrow::Cow;
 use std::error::Error;
 use std::fmt::Debug;
-use std::ops::ControlFlow;
 
 /// Added to the rest voltages, as a part of their size: at zero the motion does not depend on a voltage to first order.
 const LIFT: f64 = 0.1;
@@ -94,17 +93,7 @@ fn under_voltages(
         model.scalars(&voltages)
     };
     let start = &boundary.start;
-    let (mut discrete, _) = simulate(
-        model,
-        start,
-        h,
-        intervals,
-        scalars,
-        |_| match stop::requested() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        },
-    );
+    let (mut discrete, _) = simulate(model, start, h, intervals, scalars, |_| stop::go_on());
     // A simulation that ends early is held where it ended.
     while discrete.intervals() < intervals {
         discrete.z.push(discrete.z[discrete.z.len() - 1].clone());

@@ -424,11 +424,6 @@ macro_rules! virtual_work {
                 const VIRTUAL: usize = $vectors;
                 const READINGS: usize = 3;
 
-                /// It is linear in variations.
-                fn couples(i: usize, j: usize) -> bool {
-                    i >= $vectors || j >= $vectors
-                }
-
                 fn at<const ORDER: usize>(
                     &self,
                     p: &SVector<f64, $arguments>,

@@ -8,6 +8,7 @@ use crate::energy::contact::vector;
 use crate::energy::dot_products::OfDotProducts;
 use crate::energy::{
     ContactDamping, ContactElasticity, ContactForce, ContactGap, ContactLaw, Cores, Energy,
+    WithDerivatives,
 };
 use crate::math::{Derivatives, Jet, Local};
 use nalgebra::{Matrix3, SVector, Vector3};
@@ -147,17 +148,9 @@ impl<const N: usize> CoreForce<N> {
     }
 }
 
-impl<const N: usize> Local for CoreForce<N> {
-    fn value(&self) -> f64 {
+impl<const N: usize> WithDerivatives for CoreForce<N> {
+    fn scalar(&self) -> f64 {
         self.of.value
-    }
-
-    fn plain<const NV: usize>(&self) -> impl Derivatives {
-        *self
-    }
-
-    fn along<const NV: usize>(&self) -> impl Derivatives {
-        *self
     }
 }
 
@@ -205,17 +198,9 @@ pub struct FormVariation<const N: usize> {
     along: AlongForm<N>,
 }
 
-impl<const N: usize> Local for FormVariation<N> {
-    fn value(&self) -> f64 {
+impl<const N: usize> WithDerivatives for FormVariation<N> {
+    fn scalar(&self) -> f64 {
         self.along.rate
-    }
-
-    fn plain<const NV: usize>(&self) -> impl Derivatives {
-        *self
-    }
-
-    fn along<const NV: usize>(&self) -> impl Derivatives {
-        *self
     }
 }
 
@@ -250,7 +235,7 @@ pub(super) struct Factors<W, const N: usize, const C: usize> {
     pub(super) places: [Option<usize>; N],
 }
 
-impl<W: Local + Derivatives, const N: usize, const C: usize> Factors<W, N, C> {
+impl<W: WithDerivatives, const N: usize, const C: usize> Factors<W, N, C> {
     /// The argument of F that an argument of the work is.
     fn argument(&self, i: usize) -> Option<usize> {
         let place = self.places[i % N]?;
@@ -258,15 +243,15 @@ impl<W: Local + Derivatives, const N: usize, const C: usize> Factors<W, N, C> {
     }
 
     fn gradient(&self, i: usize) -> Vector3<f64> {
-        let own = self.work.force(i) * self.force.value();
+        let own = self.work.force(i) * self.force.scalar();
         match self.argument(i) {
-            Some(argument) => own + self.force.force(argument) * self.work.value(),
+            Some(argument) => own + self.force.force(argument) * self.work.scalar(),
             None => own,
         }
     }
 
     fn hessian(&self, i: usize, j: usize) -> Matrix3<f64> {
-        let mut block = self.work.block(i, j) * self.force.value();
+        let mut block = self.work.block(i, j) * self.force.scalar();
         let [a, b] = [i, j].map(|i| self.argument(i));
         if let Some(a) = a {
             block += self.force.force(a) * self.work.force(j).transpose();
@@ -275,28 +260,20 @@ impl<W: Local + Derivatives, const N: usize, const C: usize> Factors<W, N, C> {
             block += self.work.force(i) * self.force.force(b).transpose();
         }
         if let (Some(a), Some(b)) = (a, b) {
-            block += self.force.block(a, b) * self.work.value();
+            block += self.force.block(a, b) * self.work.scalar();
         }
         block
     }
 }
 
-impl<W: Local + Derivatives + Copy, const N: usize, const C: usize> Local for Times<W, N, C> {
-    fn value(&self) -> f64 {
+impl<W: WithDerivatives, const N: usize, const C: usize> WithDerivatives for Times<W, N, C> {
+    fn scalar(&self) -> f64 {
         let factors = self.0.as_ref();
-        factors.map_or(0.0, |of| of.force.value() * of.work.value())
-    }
-
-    fn plain<const NV: usize>(&self) -> impl Derivatives {
-        *self
-    }
-
-    fn along<const NV: usize>(&self) -> impl Derivatives {
-        *self
+        factors.map_or(0.0, |of| of.force.scalar() * of.work.scalar())
     }
 }
 
-impl<W: Local + Derivatives, const N: usize, const C: usize> Derivatives for Times<W, N, C> {
+impl<W: WithDerivatives, const N: usize, const C: usize> Derivatives for Times<W, N, C> {
     fn force(&self, i: usize) -> Vector3<f64> {
         let factors = self.0.as_ref();
         factors.map_or_else(Vector3::zeros, |of| of.gradient(i))
@@ -345,11 +322,6 @@ macro_rules! of_cores {
 
                 const VIRTUAL: usize = $vectors;
                 const READINGS: usize = 3;
-
-                /// It is linear in variations.
-                fn couples(i: usize, j: usize) -> bool {
-                    i >= $vectors || j >= $vectors
-                }
 
                 fn at<const ORDER: usize>(
                     &self,

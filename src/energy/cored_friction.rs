@@ -6,8 +6,8 @@
 
 use crate::energy::closest::Form;
 use crate::energy::cored::{CoreForce, Factors, Times, reading};
-use crate::energy::{ContactFriction, Cores, Energy, FrictionLocal};
-use crate::math::{Derivatives, Jet, Local};
+use crate::energy::{ContactFriction, Cores, Energy, FrictionLocal, WithDerivatives};
+use crate::math::{Derivatives, Jet};
 use nalgebra::{Matrix3, SVector, Vector3};
 
 const PLACE: usize = 1;
@@ -105,17 +105,9 @@ fn spread<T: Copy + Default, const N: usize, const C: usize>(
     places.map(|place| place.map_or_else(T::default, |place| of[place]))
 }
 
-impl<const N: usize> Local for AtFeet<N> {
-    fn value(&self) -> f64 {
-        self.inner.value()
-    }
-
-    fn plain<const NV: usize>(&self) -> impl Derivatives {
-        *self
-    }
-
-    fn along<const NV: usize>(&self) -> impl Derivatives {
-        *self
+impl<const N: usize> WithDerivatives for AtFeet<N> {
+    fn scalar(&self) -> f64 {
+        self.inner.scalar()
     }
 }
 
@@ -212,11 +204,6 @@ macro_rules! friction_of_cores {
 
                 const VIRTUAL: usize = $vectors;
                 const READINGS: usize = 3;
-
-                /// It is linear in variations.
-                fn couples(i: usize, j: usize) -> bool {
-                    i >= $vectors || j >= $vectors
-                }
 
                 fn at<const ORDER: usize>(
                     &self,

@@ -1,6 +1,7 @@
 //! Virtual works and other functions of dot products of vectors, with their derivatives by the vectors.
 
-use crate::math::{Derivatives, Jet, Local};
+use crate::energy::WithDerivatives;
+use crate::math::{Derivatives, Jet};
 use nalgebra::{Matrix3, SVector, Vector3};
 
 /// A sum of such works of `K` vectors.
@@ -116,17 +117,9 @@ impl<const K: usize> OfDotProducts<K> {
     }
 }
 
-impl<const K: usize> Local for OfDotProducts<K> {
-    fn value(&self) -> f64 {
+impl<const K: usize> WithDerivatives for OfDotProducts<K> {
+    fn scalar(&self) -> f64 {
         self.value
-    }
-
-    fn plain<const NV: usize>(&self) -> impl Derivatives {
-        *self
-    }
-
-    fn along<const NV: usize>(&self) -> impl Derivatives {
-        *self
     }
 }
 

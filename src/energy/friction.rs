@@ -13,8 +13,8 @@
 
 use crate::energy::contact::{ramp, vector, virtual_work};
 use crate::energy::dot_products::{OfDotProducts, Product};
-use crate::energy::{ContactLaw, Energy, Surface};
-use crate::math::{Derivatives, Jet, Local};
+use crate::energy::{ContactLaw, Energy, Surface, WithDerivatives};
+use crate::math::{Derivatives, Jet};
 use nalgebra::{Matrix3, SVector, Vector3};
 
 /// Virtual work of the friction of a contact; arguments: variations of the span r, of t₁, t₂, n of a plane of a body, and of three directors of
@@ -386,17 +386,9 @@ impl<const N: usize, const K: usize> FrictionLocal<N, K> {
     }
 }
 
-impl<const N: usize, const K: usize> Local for FrictionLocal<N, K> {
-    fn value(&self) -> f64 {
+impl<const N: usize, const K: usize> WithDerivatives for FrictionLocal<N, K> {
+    fn scalar(&self) -> f64 {
         self.work.value
-    }
-
-    fn plain<const NV: usize>(&self) -> impl Derivatives {
-        *self
-    }
-
-    fn along<const NV: usize>(&self) -> impl Derivatives {
-        *self
     }
 }
 

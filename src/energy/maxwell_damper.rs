@@ -1,7 +1,7 @@
 //! Damper of a Maxwell branch at a point of a finite element: derivatives by thirteen numbers.
 
-use crate::energy::{Energy, law};
-use crate::math::{Derivatives, Jet, Local, Matrix, Number, Vector};
+use crate::energy::{Energy, WithDerivatives, law};
+use crate::math::{Derivatives, Jet, Matrix, Number, Vector};
 use nalgebra::SVector;
 
 /// Virtual work of the damper of a Maxwell branch at a point, `−½ c tr(A⁻¹Ȧ A⁻¹δA)` of A = C_i⁻¹ with the viscous strain C_i.
@@ -161,20 +161,10 @@ fn place(vector: usize, component: usize) -> Option<usize> {
     }
 }
 
-impl Local for DamperDerivatives {
+impl WithDerivatives for DamperDerivatives {
     #[inline(always)]
-    fn value(&self) -> f64 {
+    fn scalar(&self) -> f64 {
         self.value
-    }
-
-    #[inline(always)]
-    fn plain<const NV: usize>(&self) -> impl Derivatives {
-        *self
-    }
-
-    #[inline(always)]
-    fn along<const NV: usize>(&self) -> impl Derivatives {
-        *self
     }
 }
 

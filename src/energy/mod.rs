@@ -53,8 +53,8 @@ pub use one_sided::{Cable, CoordinateStops};
 pub use spring::{CoordinateSpring, JointAngle, JointDisplacement, LinearSpring, SpanDamper};
 pub use viscosity::{AngularDamper, CoordinateDamper, LinearDamper, ViscousCell};
 
-use crate::math::{Local, Number};
-use nalgebra::SVector;
+use crate::math::{Derivatives, Local, Number};
+use nalgebra::{Matrix3, SVector, Vector3};
 
 /// A scalar of `M` arguments, differentiated exactly: vectors first, three arguments each, then scalars. Its constants and arguments are
 /// numbers `T`, so that derivatives by constants ride along.
@@ -81,9 +81,9 @@ pub trait Energy<const M: usize, T: Number = f64>: Clone + Send + Sync {
     /// True if it is a sum of functions of the vectors alone, each times a constant or the square of one scalar.
     const OF_SQUARES: bool = false;
 
-    /// Returns true if the vector arguments `i` and `j` have mixed second derivatives.
-    fn couples(_i: usize, _j: usize) -> bool {
-        true
+    /// Returns true if the vector arguments `i` and `j` have mixed second derivatives; a virtual work is linear in virtual ones.
+    fn couples(i: usize, j: usize) -> bool {
+        i >= Self::VIRTUAL || j >= Self::VIRTUAL
     }
 
     /// Storage of its derivatives up to an order: a [`Jet`](crate::math::Jet), or fewer numbers.
@@ -91,4 +91,56 @@ pub trait Energy<const M: usize, T: Number = f64>: Clone + Send + Sync {
 
     /// Its derivatives at `p` up to `ORDER`, with rates along `w` when that is 3.
     fn at<const ORDER: usize>(&self, p: &SVector<T, M>, w: &SVector<T, M>) -> Self::Local<ORDER>;
+}
+
+/// A scalar with its derivatives and no rates of them: a virtual work, or what is only measured.
+pub trait WithDerivatives: Derivatives {
+    /// Its value.
+    fn scalar(&self) -> f64;
+}
+
+impl<W: WithDerivatives> Local for W {
+    #[inline(always)]
+    fn value(&self) -> f64 {
+        self.scalar()
+    }
+
+    #[inline(always)]
+    fn plain<const NV: usize>(&self) -> impl Derivatives {
+        self
+    }
+
+    #[inline(always)]
+    fn along<const NV: usize>(&self) -> impl Derivatives {
+        self
+    }
+}
+
+impl<T: Number, D: Derivatives<T>> Derivatives<T> for &D {
+    const HAS_SECOND: bool = D::HAS_SECOND;
+
+    #[inline(always)]
+    fn force(&self, i: usize) -> Vector3<T> {
+        (**self).force(i)
+    }
+
+    #[inline(always)]
+    fn row(&self, s: usize) -> T {
+        (**self).row(s)
+    }
+
+    #[inline(always)]
+    fn block(&self, i: usize, j: usize) -> Matrix3<T> {
+        (**self).block(i, j)
+    }
+
+    #[inline(always)]
+    fn column(&self, i: usize, s: usize) -> Vector3<T> {
+        (**self).column(i, s)
+    }
+
+    #[inline(always)]
+    fn entry(&self, s: usize, t: usize) -> T {
+        (**self).entry(s, t)
+    }
 }

@@ -13,7 +13,6 @@ use crate::model::{Model, System};
 use crate::stop;
 use crate::tasks::{self, SimulationRequest};
 use crate::workflow::Simulated;
-use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// A simulation under given voltages.
@@ -48,10 +47,7 @@ impl Simulation {
         let system = &system.checked()?;
         let task = self.resolve(system)?;
         let request = SimulationRequest::default();
-        let go_on = &mut |_: usize, _: &Model, _: &DiscreteTrajectory| match stop::requested() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        };
+        let go_on = &mut |_: usize, _: &Model, _: &DiscreteTrajectory| stop::go_on();
         let result = tasks::simulate(system, &task, request, go_on)?;
         let moved = &result.simulated;
         let trajectory = Trajectory::from_discrete(&moved.model, &moved.discrete);

@@ -288,7 +288,8 @@ impl Repeat {
             scalars
         };
         let step = h / steps as f64;
-        let (discrete, failure) = simulate(model, start, step, steps * n, scalars, |_| go_on());
+        let (discrete, failure) =
+            simulate(model, start, step, steps * n, scalars, |_| stop::go_on());
         let motion = solved(model, &discrete, None);
         let instants = 0..=discrete.intervals() / steps;
         let of = |k: usize| Distance::between(model, &motion, steps * k, optimal, k);
@@ -354,14 +355,6 @@ fn turns(model: &Model, motion: &Solution, k: usize) -> Option<(String, f64)> {
     Some((joint.name.clone(), angle))
 }
 
-/// Goes on unless Ctrl-C asks to stop.
-pub(crate) fn go_on() -> ControlFlow<()> {
-    match stop::requested() {
-        true => ControlFlow::Break(()),
-        false => ControlFlow::Continue(()),
-    }
-}
-
 /// Durations of the optimum for which voltages are held.
 pub(crate) const DURATIONS: usize = 5;
 /// A drift from the goal, as a part of the path length, from which on it is not held.
@@ -379,7 +372,7 @@ pub(crate) struct Held {
 
 /// Simulates the voltages of an instant, from the end of an optimum on.
 pub(crate) fn held(model: &Model, end: &Start, optimal: &Solution, voltages: &[f64]) -> Held {
-    let (discrete, failure) = constant(model, end, optimal, voltages, DURATIONS, go_on);
+    let (discrete, failure) = constant(model, end, optimal, voltages, DURATIONS, stop::go_on);
     let motion = solved(model, &discrete, None);
     let n = optimal.intervals();
     let of = |k: usize| Distance::between(model, &motion, k, optimal, n);

@@ -39,7 +39,7 @@ impl ContactShape {
     /// Its core; none of a point.
     pub(super) fn core(&self) -> Option<Core> {
         let axes = self.own_axes();
-        let half_lengths: Vec<f64> = axes.iter().map(Vector3::norm).collect();
+        let mut half_lengths: Vec<f64> = axes.iter().map(Vector3::norm).collect();
         let units: Vec<Vector3<f64>> = axes.iter().map(Vector3::normalize).collect();
         match units[..] {
             [] => None,
@@ -50,13 +50,15 @@ impl ContactShape {
                     directions: [axis, first, second],
                 })
             }
-            [a, b, ..] => Some(Core {
-                half_lengths: [half_lengths[0], half_lengths[1]]
-                    .into_iter()
-                    .chain([half_lengths.get(2).copied().unwrap_or(0.0)])
-                    .collect(),
-                directions: [a, b, units.get(2).copied().unwrap_or(a.cross(&b))],
-            }),
+            [a, b, ..] => {
+                // A plate is a box.
+                half_lengths.resize(3, 0.0);
+                let third = units.get(2).copied().unwrap_or(a.cross(&b));
+                Some(Core {
+                    half_lengths,
+                    directions: [a, b, third],
+                })
+            }
         }
     }
 
