@@ -311,41 +311,23 @@ fn axes(random: &mut Random) -> [Vector3<f64>; 4] {
     [round, first, second, first.cross(&second)]
 }
 
-/// The least distance of points of both cores, by a search over grids that close in on the closest ones.
+/// The least distance of points of both cores: each foot in turn moves to its closest place, until all of them stay.
 fn searched(r: &Vector3<f64>, lengths: &[(Vector3<f64>, f64)]) -> f64 {
-    let mut best = vec![0.0; lengths.len()];
-    let mut width = 1.0;
-    let steps: i32 = if lengths.len() > 2 { 2 } else { 6 };
-    let at = |parts: &[f64]| {
-        let feet = parts.iter().zip(lengths);
-        (r - feet
-            .map(|(part, (axis, length))| axis * (part * length))
-            .sum::<Vector3<f64>>())
-        .norm()
-    };
-    while width > 1e-9 {
-        let centre = best.clone();
-        let mut grid = vec![Vec::new()];
-        for part in &centre {
-            let near = (-steps..=steps).map(|k| {
-                let place: f64 = part + width * f64::from(k) / f64::from(steps);
-                place.clamp(-1.0, 1.0)
-            });
-            let near: Vec<f64> = near.collect();
-            let longer = |one: &Vec<f64>| -> Vec<Vec<f64>> {
-                near.iter().map(|x| [&one[..], &[*x]].concat()).collect()
-            };
-            grid = grid.iter().flat_map(longer).collect();
+    let halves: Vec<Vector3<f64>> = lengths.iter().map(|(axis, half)| axis * *half).collect();
+    let mut parts = vec![0.0_f64; halves.len()];
+    let mut apart = *r;
+    for _ in 0..100_000 {
+        let before = apart;
+        for (part, half) in parts.iter_mut().zip(&halves) {
+            let moved = (*part + apart.dot(half) / half.norm_squared()).clamp(-1.0, 1.0);
+            apart -= half * (moved - *part);
+            *part = moved;
         }
-        let least = grid.into_iter().min_by(|a, b| at(a).total_cmp(&at(b)));
-        let least = least.unwrap();
-        // A grid is left only where it holds nothing better.
-        if at(&least) >= at(&best) - 1e-15 {
-            width *= 0.7;
+        if (apart - before).norm() < 1e-12 {
+            break;
         }
-        best = least;
     }
-    at(&best)
+    apart.norm()
 }
 
 #[test]
