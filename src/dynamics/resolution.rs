@@ -24,7 +24,7 @@ use crate::dynamics::error::StepError;
 use crate::dynamics::trajectory::{DiscreteTrajectory, Trajectory};
 use crate::functional::{Sample, TermKind};
 use crate::math::Vector;
-use crate::model::Model;
+use crate::model::{ContactReading, Model};
 use std::f64::consts::PI;
 
 /// Part of the energy exchanged in a step that may be made or lost in it.
@@ -324,6 +324,22 @@ pub fn short_touches(model: &Model, discrete: &DiscreteTrajectory) -> Vec<ShortT
         std::mem::swap(&mut here, &mut next);
     }
     shortest.into_iter().flatten().collect()
+}
+
+/// Distance from the first touch at which a step ends there, in lengths of the system.
+const AT_TOUCH: f64 = 1e-6;
+
+/// The part of a step after which the first of the contacts that begin or end in it does so, by their overlaps at both ends.
+pub(super) fn part_to_touch(model: &Model, ends: [&Configuration; 2]) -> Option<f64> {
+    let near = AT_TOUCH * model.length();
+    let part = |contact: &ContactReading| {
+        let ramp = 0.5 * contact.law.smoothing;
+        let [a, b] = ends.map(|end| contact.touch([&end.x, &end.w]).overlap + ramp);
+        let changes = a * b < 0.0 && a.abs().min(b.abs()) > near;
+        changes.then(|| a / (a - b))
+    };
+    let parts = model.contacts.iter().filter_map(part);
+    parts.min_by(f64::total_cmp)
 }
 
 /// The least gap in mm of each contact at the instants of a motion, by the names of contacts; negative where both sides overlap.

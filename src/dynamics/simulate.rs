@@ -320,7 +320,7 @@ impl<E: Equations> Steps<E> {
         loop {
             let end = if part < h { from + part } else { to };
             self.equations.begin([from, end], drive);
-            self.used = 0.0;
+            (self.used, self.touch) = (0.0, None);
             let error = match self.attempt(part) {
                 Ok(()) => break,
                 Err(stopped @ StepError::Stopped { .. }) => return Err(stopped),
@@ -328,11 +328,16 @@ impl<E: Equations> Steps<E> {
             };
             if std::mem::take(&mut self.stale) || self.make_exact_after(&error) {
                 self.factored = None;
-                if self.used <= 1.0 {
+                if self.used <= 1.0 && self.touch.is_none() {
                     continue;
                 }
             }
-            let shorter = part * factor(self.used).min(0.5);
+            let by_error = match self.touch {
+                Some(_) if self.used <= 1.0 => 1.0,
+                _ => factor(self.used).min(0.5),
+            };
+            // A step ends where a contact begins or ends.
+            let shorter = part * self.touch.map_or(by_error, |touch| touch.min(by_error));
             if shorter < least {
                 if !self.updates.make_double() {
                     return Err(error);

@@ -5,7 +5,7 @@ use crate::dynamics::contraction::Verdict;
 use crate::dynamics::energies::Work;
 use crate::dynamics::error::StepError;
 use crate::dynamics::newton_matrix::NewtonMatrix;
-use crate::dynamics::resolution::{Balance, turned};
+use crate::dynamics::resolution::{Balance, part_to_touch, turned};
 use crate::dynamics::singular_configurations;
 use crate::dynamics::solving::{Drive, Newton};
 use crate::dynamics::trajectory::{StepState, StepperReport};
@@ -38,6 +38,8 @@ pub struct Steps<E> {
     pub(super) allowed: Option<[f64; 2]>,
     /// Local error of the last attempt as a part of the allowed one.
     pub(super) used: f64,
+    /// Part of the last attempt after which a contact begins or ends, where a tolerance controls the steps.
+    pub(super) touch: Option<f64>,
     /// Energy balance of the last attempt, where the method has one.
     balance: Option<Balance>,
     pub(super) report: StepperReport,
@@ -61,6 +63,7 @@ impl<E: Equations> Steps<E> {
             updates: Updates::new(matrix, scales, newton),
             allowed: None,
             used: 0.0,
+            touch: None,
             balance: None,
             report: StepperReport::default(),
         }
@@ -319,7 +322,8 @@ impl<E: Equations> Steps<E> {
         };
         let error = self.equations.local_error(step);
         self.used = error / allowed;
-        (error > allowed).then_some(StepError::Inaccurate {
+        self.touch = part_to_touch(self.equations.model(), self.equations.ends());
+        (error > allowed || self.touch.is_some()).then_some(StepError::Inaccurate {
             time,
             step,
             error,
