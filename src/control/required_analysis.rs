@@ -192,7 +192,12 @@ impl<'a> Named<'a> {
                 }
                 PartKind::Spring => self.of_points(&components.springs[part].points()),
                 PartKind::Tendon => self.of_points(&components.tendons[part].through),
-                PartKind::Contact => self.of_points(&components.contacts[part].points()),
+                PartKind::Contact => {
+                    let contact = &components.contacts[part];
+                    let solids = contact.nodes().into_iter().map(|[solid, _]| solid);
+                    self.initially_moving.solids.extend(solids);
+                    self.of_points(&contact.points());
+                }
                 PartKind::Source | PartKind::Block => {}
             }
         }

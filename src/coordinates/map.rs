@@ -3,7 +3,7 @@
 
 use crate::coordinates::configuration::Configuration;
 use crate::coordinates::tree::{CHART, TangentColumns, Tree};
-use crate::kinematics::{Carrier, MaterialVector, Pose};
+use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm};
 use crate::math::{Matrix, Vector};
 use std::ops::Range;
 
@@ -17,8 +17,63 @@ pub enum Dependence {
         /// The parts.
         parts: Vec<LinearPart>,
     },
-    /// Columns of a tree.
+    /// Columns of a tree, and of the nodes that move it too.
     Articulated(TangentColumns),
+}
+
+impl Dependence {
+    /// The parts of one that is linear; none of a vector on a tree.
+    fn parts(&self) -> &[LinearPart] {
+        match self {
+            Self::Linear { parts, .. } => parts,
+            Self::Articulated(_) => &[],
+        }
+    }
+
+    /// Σ c l e over the parts.
+    fn along(&self, l: &[f64]) -> Vector {
+        self.from(Vector::zeros(), l)
+    }
+
+    /// The value of one that is linear.
+    fn at(&self, z: &[f64]) -> Vector {
+        match self {
+            Self::Linear { constant, .. } => self.from(*constant, z),
+            Self::Articulated(_) => Vector::zeros(),
+        }
+    }
+
+    fn from(&self, mut sum: Vector, of: &[f64]) -> Vector {
+        for part in self.parts() {
+            sum[part.axis] += of[part.coordinate] * part.factor;
+        }
+        sum
+    }
+
+    /// Coordinates that move it.
+    fn support(&self) -> Vec<usize> {
+        match self {
+            Self::Articulated(packed) => packed.support.clone(),
+            Self::Linear { parts, .. } => parts.iter().map(|p| p.coordinate).collect(),
+        }
+    }
+
+    /// Adds Pᵀ f for a force on it.
+    fn pull_back(&self, columns: &[f64], force: &Vector, rows: &mut [f64]) {
+        match self {
+            Self::Articulated(packed) => {
+                let [x, y, z] = packed.rows(columns);
+                for (i, &row) in packed.support.iter().enumerate() {
+                    rows[row] += x[i] * force.x + y[i] * force.y + z[i] * force.z;
+                }
+            }
+            Self::Linear { parts, .. } => {
+                for part in parts {
+                    rows[part.coordinate] += part.factor * force[part.axis];
+                }
+            }
+        }
+    }
 }
 
 /// Factor c times one coordinate along an axis.
@@ -63,6 +118,8 @@ pub struct CoordinateMap {
     pub of_internal: usize,
     /// Vectors with linear dependence.
     linear: Vec<usize>,
+    /// Linear dependence on nodes of vectors on the tree.
+    beside: Vec<(usize, Dependence)>,
 }
 
 /// First coordinate of the four vectors φ, d₁, d₂, d₃ of a body in director coordinates.
@@ -73,15 +130,23 @@ pub(super) fn body_offset(body: usize) -> usize {
 impl CoordinateMap {
     /// Joint coordinates of a tree, and coordinates of nodes.
     pub fn articulated(
-        tree: Tree,
+        mut tree: Tree,
         vectors: &[MaterialVector],
         nodes: &[NodePlace],
         internal: usize,
         multipliers: usize,
     ) -> Self {
         let parts = parts_of_nodes(tree.coordinates(), nodes);
+        let of_nodes = |(index, vector): (usize, &MaterialVector)| {
+            let is_node = |term: &&VectorTerm| matches!(term.carrier, Carrier::Node(_));
+            let terms: Vec<_> = vector.terms.iter().filter(is_node).copied().collect();
+            let is_meant = vector.is_on_tree() && !terms.is_empty();
+            is_meant.then(|| (index, linear(&MaterialVector { terms }, nodes, &parts)))
+        };
+        let beside: Vec<_> = vectors.iter().enumerate().filter_map(of_nodes).collect();
+        tree.widen(beside.iter().map(|(v, of)| (*v, of.support())));
         let dependence = |(vector, packed): (&MaterialVector, &TangentColumns)| {
-            if vector.is_of_bodies() {
+            if vector.is_on_tree() {
                 Dependence::Articulated(packed.clone())
             } else {
                 linear(vector, nodes, &parts)
@@ -89,7 +154,8 @@ impl CoordinateMap {
         };
         let of_bodies = tree.coordinates();
         let vectors = vectors.iter().zip(tree.packed()).map(dependence).collect();
-        Self::new(vectors, tree, of_bodies, nodes, [internal, multipliers])
+        let map = Self::new(vectors, tree, of_bodies, nodes, [internal, multipliers]);
+        Self { beside, ..map }
     }
 
     /// Director coordinates of `bodies` bodies, and coordinates of nodes.
@@ -131,6 +197,7 @@ impl CoordinateMap {
             of_bodies,
             of_nodes,
             of_internal,
+            beside: Vec::new(),
         }
     }
 
@@ -147,7 +214,14 @@ impl CoordinateMap {
     /// Storage for an instant.
     pub fn instant(&self) -> Configuration {
         let zeros = || vec![Vector::zeros(); self.vectors.len()];
-        let columns = vec![0.0; self.tree.size()];
+        let still = vec![0.0; self.tree.size()];
+        let mut columns = still.clone();
+        for (v, of) in &self.beside {
+            let packed = &self.tree.packed()[*v];
+            for (part, place) in of.parts().iter().zip(packed.of_tree..) {
+                columns[packed.first + part.axis * packed.stride + place] = part.factor;
+            }
+        }
         let mut z = vec![0.0; self.unknowns()];
         for _ in 0..self.charts() {
             z.extend([1.0, 0.0, 0.0, 0.0]);
@@ -157,8 +231,8 @@ impl CoordinateMap {
             l: vec![0.0; self.unknowns()],
             x: zeros(),
             w: zeros(),
-            columns: columns.clone(),
-            columns_l: columns,
+            columns,
+            columns_l: still,
             forces: zeros(),
             contracted: zeros(),
             tree: self.tree.state(),
@@ -203,7 +277,10 @@ impl CoordinateMap {
         self.tree.place(unknowns, charts, state);
         self.tree.vectors(state, x);
         for &v in &self.linear {
-            x[v] = self.sum_of_parts(v, z, true);
+            x[v] = self.vectors[v].at(z);
+        }
+        for (v, of) in &self.beside {
+            x[*v] += of.at(z);
         }
     }
 
@@ -212,26 +289,14 @@ impl CoordinateMap {
         self.tree.tangent(&mut instant.tree, &mut instant.columns);
     }
 
-    fn sum_of_parts(&self, vector: usize, z: &[f64], constant: bool) -> Vector {
-        let Dependence::Linear {
-            constant: offset,
-            parts,
-        } = &self.vectors[vector]
-        else {
-            unreachable!("the list holds linear vectors")
-        };
-        let mut sum = if constant { *offset } else { Vector::zeros() };
-        for part in parts {
-            sum[part.axis] += z[part.coordinate] * part.factor;
-        }
-        sum
-    }
-
     /// w = P l and, for a tree, the derivatives of the columns along l.
     pub fn along(&self, instant: &mut Configuration) {
         self.tree.along(instant);
         for &v in &self.linear {
-            instant.w[v] = self.sum_of_parts(v, &instant.l, false);
+            instant.w[v] = self.vectors[v].along(&instant.l);
+        }
+        for (v, of) in &self.beside {
+            instant.w[*v] += of.along(&instant.l);
         }
     }
 
@@ -240,7 +305,10 @@ impl CoordinateMap {
         self.tree
             .pull_back(&mut instant.tree, &instant.forces, rows);
         for &v in &self.linear {
-            self.pull_back_one(v, &[], &instant.forces[v], rows);
+            self.vectors[v].pull_back(&[], &instant.forces[v], rows);
+        }
+        for (v, of) in &self.beside {
+            of.pull_back(&[], &instant.forces[*v], rows);
         }
     }
 
@@ -262,19 +330,7 @@ impl CoordinateMap {
 
     /// Adds Pᵀ f for a force on one vector.
     pub fn pull_back_one(&self, vector: usize, columns: &[f64], force: &Vector, rows: &mut [f64]) {
-        match &self.vectors[vector] {
-            Dependence::Articulated(packed) => {
-                let [x, y, z] = packed.rows(columns);
-                for (i, &row) in packed.support.iter().enumerate() {
-                    rows[row] += x[i] * force.x + y[i] * force.y + z[i] * force.z;
-                }
-            }
-            Dependence::Linear { parts, .. } => {
-                for part in parts {
-                    rows[part.coordinate] += part.factor * force[part.axis];
-                }
-            }
-        }
+        self.vectors[vector].pull_back(columns, force, rows);
     }
 
     /// Adds Pᵀ f for the forces on some vectors times a factor, and takes them away.
@@ -313,10 +369,7 @@ impl CoordinateMap {
 
     /// Coordinates that move a vector.
     pub fn support(&self, vector: usize) -> Vec<usize> {
-        match &self.vectors[vector] {
-            Dependence::Articulated(packed) => packed.support.clone(),
-            Dependence::Linear { parts, .. } => parts.iter().map(|p| p.coordinate).collect(),
-        }
+        self.vectors[vector].support()
     }
 
     /// Poses of the bodies at an instant.

@@ -175,11 +175,11 @@ impl MaterialVector {
         }
     }
 
-    /// Returns true if it follows from the poses of the bodies alone.
-    pub fn is_of_bodies(&self) -> bool {
-        self.terms
-            .iter()
-            .all(|t| matches!(t.carrier, Carrier::Ground | Carrier::Body(_)))
+    /// Returns true if bodies move it, or nothing does.
+    pub fn is_on_tree(&self) -> bool {
+        let of_body = |t: &VectorTerm| matches!(t.carrier, Carrier::Body(_));
+        let is_still = |t: &VectorTerm| t.carrier == Carrier::Ground;
+        self.terms.iter().any(of_body) || self.terms.iter().all(is_still)
     }
 
     /// Sum of the coefficients of its centres: its displacement where all that carries it moves by a unit.

@@ -53,6 +53,7 @@ impl Construction<'_> {
             self.variables,
             vectors,
         )
+        .with_nodes(self.blocks.list.iter().map(|block| &block.vectors[..]))
     }
 
     /// Coordinate `i` of an instant with a map.

@@ -60,8 +60,14 @@ pub(super) fn ties<'a>(run: &Run<'a>, instants: &[usize]) -> Vec<MovingLine<'a>>
         let line = one.plane_outline(contacts)?;
         Some((one as &dyn Component, line))
     });
-    let lines = components.iter().flat_map(outlines).chain(planes);
-    lines.map(tie).collect()
+    // A shape that touches several others is drawn once.
+    let mut lines: Vec<(&dyn Component, Vec<Attachment>)> = Vec::new();
+    for line in components.iter().flat_map(outlines).chain(planes) {
+        if !lines.iter().any(|known| known.1 == line.1) {
+            lines.push(line);
+        }
+    }
+    lines.into_iter().map(tie).collect()
 }
 
 /// The arrows of loads that ever act at some instants, of each always as many points.

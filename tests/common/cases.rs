@@ -7,7 +7,7 @@ use super::pairs::pairs;
 use super::remembering::{remembering, remembering_blocks};
 use super::systems::{
     GRAVITY, ball, blocks, branched, charged, loaded, pressed, satellite, sprung, stiffening,
-    stiffening_blocks, tied, touching, touching_shapes,
+    stiffening_blocks, tied, touching, touching_blocks, touching_shapes,
 };
 use super::timed::timed;
 use super::tracked::{energies, tracked};
@@ -330,6 +330,10 @@ pub fn cases() -> Vec<Case> {
         }),
         case("blocks, marker at rest", blocks(), &|c| {
             c.goal = corner_goal();
+        }),
+        case("blocks that touch", touching_blocks(), &|c| {
+            c.goal = corner_goal();
+            c.limits = gaps();
         }),
         case("blocks with loads", pressed(), &|c| c.goal = corner_goal()),
         case("blocks with loads, free time", pressed(), &|c| {

@@ -133,6 +133,7 @@ pub fn touching_shapes(system: System) -> System {
             axis(0.0, 0.0, 12.0),
             axis(-3.0, 4.0, 0.0),
         ],
+        node: None,
     });
     let [wall, lid, own] = &mut system.components.contacts[..] else {
         unreachable!("there are three contacts")
@@ -467,6 +468,68 @@ pub fn blocks() -> System {
         },
         solid: Some(0),
     });
+    system
+}
+
+/// The same with nodes of the block that touch a plane of the ground, and a sphere and a plate of a body.
+pub fn touching_blocks() -> System {
+    let mut system = blocks();
+    let mesh = &system.solids[0].mesh;
+    let place = |x: f64, y: f64, z: f64| Vector3::new(x, y, z);
+    let node = |x: f64, y: f64, z: f64| {
+        let node = mesh.nearest_node(&place(x, y, z)).unwrap();
+        ContactShape {
+            centre: Attachment {
+                body: None,
+                at: mesh.nodes[node],
+            },
+            node: Some([0, node]),
+            ..ContactShape::default()
+        }
+    };
+    let sphere = |at| ContactShape {
+        centre: Attachment { body: Some(1), at },
+        radius: 6.0,
+        ..ContactShape::default()
+    };
+    let plate = ContactShape {
+        axes: [
+            place(9.0, 0.0, 0.0),
+            place(0.0, 4.0, 3.0),
+            place(0.0, 0.0, 0.0),
+        ],
+        ..sphere(place(0.0, 72.0, 52.0))
+    };
+    let ground = ContactSide::Plane {
+        at: Attachment {
+            body: None,
+            at: place(0.0, 0.0, 25.0),
+        },
+        normal: place(0.0, 0.0, 1.0),
+    };
+    let contact = |name: &str, round, side| Contact {
+        name: name.into(),
+        round,
+        side,
+        elasticity: ContactElasticLaw::Linear(0.02),
+        smoothing: 30.0,
+        restitution: Some(Restitution {
+            coefficient: 0.6,
+            speed: 1.0,
+        }),
+        friction: Some(0.3),
+        slip_speed: 0.5,
+        stick: None,
+    };
+    system.components.contacts = vec![
+        contact("table", node(-10.0, 60.0, 30.0), ground),
+        contact(
+            "ball",
+            node(10.0, 60.0, 39.0),
+            ContactSide::Shape(sphere(place(12.0, 70.0, 48.0))),
+        ),
+        contact("plate", node(-10.0, 60.0, 39.0), ContactSide::Shape(plate)),
+    ];
     system
 }
 

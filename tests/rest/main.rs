@@ -7,6 +7,7 @@ mod ball_joint;
 mod blocked;
 mod domain;
 mod front_door;
+mod hertz;
 mod prestretch;
 mod prestretched_elements;
 mod similar;

@@ -8,7 +8,7 @@ const SIZES: [(&str, usize, usize); 26] = [
     (".", 1400, 7),
     ("app", 8100, 33),
     ("control", 9700, 36),
-    ("coordinates", 3150, 17),
+    ("coordinates", 3190, 17),
     ("dynamics", 11050, 36),
     ("element", 3400, 15),
     ("energy", 4400, 21),

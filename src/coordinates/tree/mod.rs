@@ -98,8 +98,10 @@ pub struct TangentColumns {
     pub first: usize,
     /// Numbers a row: the coordinates, rounded up to [`LANES`].
     pub stride: usize,
-    /// Coordinates that move the vector.
+    /// Coordinates that move the vector: those of the tree, then those of nodes, whose columns are constant.
     pub support: Vec<usize>,
+    /// Number of those of the tree.
+    pub of_tree: usize,
 }
 
 impl TangentColumns {
@@ -171,15 +173,34 @@ impl Tree {
             paths: Vec::new(),
         };
         for (index, vector) in vectors.iter().enumerate() {
-            if vector.is_of_bodies() {
+            if vector.is_on_tree() {
                 tree.lay_vector(index, vector);
             } else {
                 tree.constants.push(Vector::zeros());
                 tree.packed.push(TangentColumns::default());
             }
         }
+        tree.lay_columns();
         tree.lay_paths();
         tree
+    }
+
+    /// Gives vectors columns for coordinates that are not of the tree.
+    pub fn widen(&mut self, vectors: impl Iterator<Item = (usize, Vec<usize>)>) {
+        for (vector, coordinates) in vectors {
+            self.packed[vector].support.extend(coordinates);
+        }
+        self.lay_columns();
+    }
+
+    /// Lays the columns of all vectors, one vector after the other.
+    fn lay_columns(&mut self) {
+        self.size = 0;
+        for packed in &mut self.packed {
+            packed.first = self.size;
+            packed.stride = packed.support.len().next_multiple_of(LANES);
+            self.size += 3 * packed.stride;
+        }
     }
 
     /// Links from the one that carries `body` to the ground.
@@ -204,9 +225,8 @@ impl Tree {
                     });
                 }
                 Carrier::Ground => constant += term.at(&Pose::GROUND),
-                Carrier::Node(_) | Carrier::Coordinate(_) => {
-                    unreachable!("vectors on the tree are of bodies")
-                }
+                Carrier::Node(_) => {}
+                Carrier::Coordinate(_) => unreachable!("a coordinate is on no tree"),
             }
         }
         self.constants.push(constant);
@@ -236,13 +256,10 @@ impl Tree {
                 },
             ));
         }
-        let (first, stride) = (self.size, moved.len().next_multiple_of(LANES));
-        self.size += 3 * stride;
-        let support = moved.iter().map(|&(_, coordinate, _)| coordinate).collect();
         self.packed.push(TangentColumns {
-            first,
-            stride,
-            support,
+            support: moved.iter().map(|&(_, coordinate, _)| coordinate).collect(),
+            of_tree: moved.len(),
+            ..TangentColumns::default()
         });
         for (link, _, part) in moved {
             let known = self.moved_parts.iter().rposition(|a| *a == part);

@@ -68,7 +68,7 @@ impl Tree {
     fn each_column(&self, columns: &mut [f64], value: impl Fn(usize, usize, f64) -> Vector) {
         let mut others = self.columns.as_slice();
         for packed in &self.packed {
-            let own = others.split_off(..packed.support.len()).unwrap_or_default();
+            let own = others.split_off(..packed.of_tree).unwrap_or_default();
             let rows = &mut columns[packed.first..packed.first + 3 * packed.stride];
             let (x, rest) = rows.split_at_mut(packed.stride);
             let (y, z) = rest.split_at_mut(packed.stride);

@@ -62,7 +62,7 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     };
     let loads = lists.build("loads", &scene.loads, |spec, scope| load(spec, &on, scope))?;
     let shapes = lists.build("shapes", &scene.shapes, |spec, scope| {
-        shape(spec, &body_names, scope)
+        shape(spec, &body_names, &blocks, scope)
     })?;
     let pairs = lists.build("contacts", &scene.contacts, |spec, scope| {
         contacts(spec, &body_names, &shapes, scope)

@@ -135,7 +135,7 @@ pub(crate) fn contacts(
             );
             let name = spec.name.clone().ok_or_else(|| scope.missing_key("name"))?;
             let round = sphere.sphere(bodies, place)?;
-            vec![Pair { name, round, side }]
+            vec![Pair { name, round, side, part: 1.0 }]
         };
     );
     let elasticity = the_one!(scope, spec;
@@ -156,7 +156,12 @@ pub(crate) fn contacts(
         name: pair.name,
         round: pair.round,
         side: pair.side,
-        elasticity: elasticity.clone(),
+        elasticity: match &elasticity {
+            ContactElasticLaw::Linear(stiffness) => {
+                ContactElasticLaw::Linear(stiffness * pair.part)
+            }
+            hertz @ ContactElasticLaw::Hertz(_) => hertz.clone(),
+        },
         smoothing: Quantity::present(&spec.smoothing).unwrap_or(0.0),
         restitution,
         friction: spec.friction.filter(|friction| *friction != 0.0),
@@ -171,9 +176,11 @@ struct Pair {
     name: String,
     round: ContactShape,
     side: ContactSide,
+    /// Part of the stiffness.
+    part: f64,
 }
 
-/// The pairs of shapes of different bodies between two names.
+/// The pairs of shapes of different carriers between two names.
 fn pairs(names: &[String; 2], shapes: &[NamedShape], scope: &Scope<'_>) -> Result<Vec<Pair>> {
     let mut known: Vec<String> = shapes.iter().map(|one| one.name.clone()).collect();
     known.extend(shapes.iter().filter_map(|one| one.group.clone()));
@@ -190,7 +197,7 @@ fn pairs(names: &[String; 2], shapes: &[NamedShape], scope: &Scope<'_>) -> Resul
         // Of a group with itself each pair once.
         let from = if names[0] == names[1] { i + 1 } else { 0 };
         for other in &second[from.min(second.len())..] {
-            if one.body() != other.body() {
+            if one.carrier() != other.carrier() {
                 pairs.extend(pair([one, other], scope)?);
             }
         }
@@ -200,21 +207,28 @@ fn pairs(names: &[String; 2], shapes: &[NamedShape], scope: &Scope<'_>) -> Resul
     Ok(pairs)
 }
 
-/// The contacts of a pair of shapes: of each end of a capsule and each corner of a box on a plane, and one of others.
+/// The contacts of a pair of shapes: of each node, of each end of a capsule and each corner of a box on a plane, and one of others.
 fn pair([one, other]: [&NamedShape; 2], scope: &Scope<'_>) -> Result<Vec<Pair>> {
     let name = format!("{}_{}", one.name, other.name);
     let refused = || {
         let found = format!("{:?} and {:?}", one.name, other.name);
-        let expected = "pairs of which one is a sphere or a capsule, or one a plane";
+        let expected =
+            "pairs of which one is a sphere, a capsule, or nodes against a shape of a body";
         scope.wrong(found, expected)
     };
-    let each = |rounds: Vec<(String, ContactShape)>, side: &ContactSide| {
-        let pair = |(suffix, round)| Pair {
+    let each = |rounds: Vec<(String, f64, ContactShape)>, side: &ContactSide| {
+        let pair = |(suffix, part, round)| Pair {
             name: format!("{name}{suffix}"),
             round,
             side: side.clone(),
+            part,
         };
         rounds.into_iter().map(pair).collect()
+    };
+    let of_nodes = |nodes: &[(usize, f64, ContactShape)]| {
+        let node =
+            |(node, part, shape): &(usize, f64, ContactShape)| (format!("_{node}"), *part, *shape);
+        nodes.iter().map(node).collect()
     };
     Ok(match (&one.kind, &other.kind) {
         (ShapeKind::Shape(a), ShapeKind::Shape(b)) => {
@@ -222,22 +236,28 @@ fn pair([one, other]: [&NamedShape; 2], scope: &Scope<'_>) -> Result<Vec<Pair>> 
             if round.corners().len() > 2 {
                 return Err(refused());
             }
-            each(vec![(String::new(), round)], &ContactSide::Shape(side))
+            each(vec![(String::new(), 1.0, round)], &ContactSide::Shape(side))
         }
         (ShapeKind::Shape(shape), ShapeKind::Plane(plane))
         | (ShapeKind::Plane(plane), ShapeKind::Shape(shape)) => each(on_plane(shape), plane),
-        (ShapeKind::Plane(_), ShapeKind::Plane(_)) => return Err(refused()),
+        (ShapeKind::Nodes(nodes), ShapeKind::Plane(plane))
+        | (ShapeKind::Plane(plane), ShapeKind::Nodes(nodes)) => each(of_nodes(nodes), plane),
+        (ShapeKind::Nodes(nodes), ShapeKind::Shape(shape))
+        | (ShapeKind::Shape(shape), ShapeKind::Nodes(nodes)) => {
+            each(of_nodes(nodes), &ContactSide::Shape(*shape))
+        }
+        _ => return Err(refused()),
     })
 }
 
 /// The spheres with which a shape stands on a plane, and what is added to its name.
-fn on_plane(shape: &ContactShape) -> Vec<(String, ContactShape)> {
+fn on_plane(shape: &ContactShape) -> Vec<(String, f64, ContactShape)> {
     let corners = shape.corners();
     let suffix = |k: usize| match corners.len() {
         1 => String::new(),
         2 => ["_from", "_to"][k].to_owned(),
         _ => format!("_{}", k + 1),
     };
-    let corner = |(k, corner): (usize, &ContactShape)| (suffix(k), *corner);
+    let corner = |(k, corner): (usize, &ContactShape)| (suffix(k), 1.0, *corner);
     corners.iter().enumerate().map(corner).collect()
 }

@@ -2,15 +2,18 @@
 
 use crate::files::json::objects::objects;
 use crate::files::json::scope::{Result, Scope, refuse, the_one};
-use crate::files::scene::names::find_body;
-use crate::files::scene::point::{Point, unit_axis, vector};
+use crate::files::scene::names::{find_body, names};
+use crate::files::scene::nodes::nodes;
+use crate::files::scene::point::{CornersSpec, Point, unit_axis, vector};
+use crate::files::scene::spec_solids::PlaneSpec;
 use crate::files::units::quantity::{Length, Quantity};
+use crate::mesh::Mesh;
 use crate::model::components::{ContactShape, ContactSide};
-use crate::model::system::Attachment;
+use crate::model::system::{Attachment, Solid};
 use nalgebra::Vector3;
 
 objects! {
-    /// A shape that contacts name: a `sphere`, `capsule`, `box` or `plane` of a body.
+    /// A shape that contacts name: a `sphere`, `capsule`, `box` or `plane` of a body, or `nodes` of an elastic block.
     pub struct ContactShapeSpec {
         /// Name, unique among shapes and their groups.
         pub name: String,
@@ -27,6 +30,8 @@ objects! {
         pub cuboid: Option<BoxShapeSpec>,
         /// A plane, which reaches to infinity.
         pub plane: Option<PlaneShapeSpec>,
+        /// Nodes of an elastic block, each a point.
+        pub nodes: Option<NodesShapeSpec>,
     }
 
     /// A sphere.
@@ -66,6 +71,19 @@ objects! {
         /// Normal in the ground frame, of any length, towards what touches it.
         pub normal: [f64; 3],
     }
+
+    /// Nodes of an elastic block: those of a `face`, in a `plane` or in a `box`.
+    pub struct NodesShapeSpec {
+        /// Name of the block.
+        pub solid: String,
+        /// Name of a face of a box, or of a physical group of a mesh.
+        pub face: Option<String>,
+        /// Plane at right angles to an axis.
+        pub plane: Option<PlaneSpec>,
+        /// Box.
+        #[serde(rename = "box")]
+        pub cuboid: Option<CornersSpec>,
+    }
 }
 
 /// Greatest cosine of directions at right angles.
@@ -79,22 +97,28 @@ pub(crate) struct NamedShape {
     pub(crate) kind: ShapeKind,
 }
 
-/// A side of a contact.
+/// What touches.
 #[derive(Clone, Debug)]
 pub(crate) enum ShapeKind {
     /// A plane.
     Plane(ContactSide),
     /// A point, sphere, capsule or box.
     Shape(ContactShape),
+    /// Nodes, each with its number in the mesh and its part of the stiffness.
+    Nodes(Vec<(usize, f64, ContactShape)>),
 }
 
 impl NamedShape {
-    /// The body of the shape; none is the ground.
-    pub(crate) fn body(&self) -> Option<usize> {
+    /// The carriers of what it is: a body, or a block; none is the ground.
+    pub(crate) fn carrier(&self) -> [Option<usize>; 2] {
         match &self.kind {
-            ShapeKind::Plane(ContactSide::Plane { at, .. }) => at.body,
+            ShapeKind::Plane(ContactSide::Plane { at, .. }) => [at.body, None],
             ShapeKind::Plane(ContactSide::Shape(shape)) | ShapeKind::Shape(shape) => {
-                shape.centre.body
+                [shape.centre.body, None]
+            }
+            ShapeKind::Nodes(nodes) => {
+                let node = nodes.first().and_then(|(_, _, shape)| shape.node);
+                [None, node.map(|[solid, _]| solid)]
             }
         }
     }
@@ -104,8 +128,11 @@ impl NamedShape {
 pub(crate) fn shape(
     spec: &ContactShapeSpec,
     bodies: &[String],
+    solids: &[Solid],
     scope: &Scope<'_>,
 ) -> Result<NamedShape> {
+    refuse!(if spec.nodes.is_some() && spec.body.is_some(), scope.key("body");
+        found "\"body\"", expected "no such key, as \"nodes\" are those of a \"solid\"");
     let name = spec.body.as_deref().unwrap_or("ground");
     let body = find_body(name, bodies, &scope.key("body"))?;
     let on = |at: Vector3<f64>| Attachment { body, at };
@@ -123,6 +150,7 @@ pub(crate) fn shape(
                 centre: on((from + to) * 0.5),
                 radius: place.key("radius").positive(&capsule.radius)?,
                 axes: [(to - from) * 0.5, Vector3::zeros(), Vector3::zeros()],
+                node: None,
             })
         };
         "box" cuboid |place, cuboid| ShapeKind::Shape(ContactShape {
@@ -133,6 +161,7 @@ pub(crate) fn shape(
             at: on(vector(&plane.at)),
             normal: unit_axis(&plane.normal, &place.key("normal"))?,
         });
+        "nodes" nodes |place, nodes| ShapeKind::Nodes(nodes.each(&spec.name, solids, place)?);
     );
     Ok(NamedShape {
         name: spec.name.clone(),
@@ -172,4 +201,48 @@ impl BoxShapeSpec {
             ..ContactShape::default()
         })
     }
+}
+
+impl NodesShapeSpec {
+    /// The nodes, each with its number and its part of the stiffness.
+    fn each(
+        &self,
+        name: &str,
+        solids: &[Solid],
+        scope: &Scope<'_>,
+    ) -> Result<Vec<(usize, f64, ContactShape)>> {
+        let all = names(solids, |solid| &solid.name);
+        let expected = "the name of an elastic block";
+        let solid = scope.key("solid").find(&self.solid, &all, expected)?;
+        let mesh = &solids[solid].mesh;
+        let owner = format!("shape {name:?}");
+        let nodes = nodes!(&owner, self, mesh, scope);
+        let parts = parts_of_surface(mesh, &nodes);
+        let node = |(node, part): (usize, f64)| {
+            let at = mesh.nodes[node];
+            let shape = ContactShape {
+                centre: Attachment { body: None, at },
+                node: Some([solid, node]),
+                ..ContactShape::default()
+            };
+            (node, part, shape)
+        };
+        Ok(nodes.into_iter().zip(parts).map(node).collect())
+    }
+}
+
+/// The part of each of some nodes in the surface between them, a quarter of each face; equal parts where they make no face.
+fn parts_of_surface(mesh: &Mesh, nodes: &[usize]) -> Vec<f64> {
+    let mut areas = vec![0.0; mesh.nodes.len()];
+    for face in mesh.faces_of(nodes) {
+        let [a, b, c, d] = face.map(|node| mesh.nodes[node]);
+        let area = 0.5 * (c - a).cross(&(d - b)).norm();
+        face.iter().for_each(|&node| areas[node] += 0.25 * area);
+    }
+    let whole: f64 = areas.iter().sum();
+    let part = |&node: &usize| match whole > 0.0 {
+        true => areas[node] / whole,
+        false => (nodes.len() as f64).recip(),
+    };
+    nodes.iter().map(part).collect()
 }

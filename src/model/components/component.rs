@@ -19,6 +19,11 @@ pub trait Component: Debug + Send + Sync {
     /// The points that it ties together.
     fn points(&self) -> Vec<Attachment>;
 
+    /// The nodes of elastic blocks that it ties, each with its block before it.
+    fn nodes(&self) -> Vec<[usize; 2]> {
+        Vec::new()
+    }
+
     /// Checks its constants.
     ///
     /// # Errors

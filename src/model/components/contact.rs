@@ -188,7 +188,10 @@ impl Contact {
 
     /// The normal force with the vectors that it reads; `None` where no side moves.
     pub(crate) fn reading(&self, terms: &mut Terms<'_>) -> Option<ContactReading> {
-        let span = terms.span(self.origin(), &self.round.centre)?;
+        let span = match self.round.node {
+            None => terms.span(self.origin(), &self.round.centre)?,
+            Some(node) => terms.span_to_node(self.origin(), node)?,
+        };
         let normal = self.turning_normal(terms);
         let axes = self.axes().into_iter().map(|(end, axis)| {
             let axis = terms.direction(&end, &axis);
@@ -395,6 +398,8 @@ impl Contact {
             }
             ContactSide::Shape(other) => {
                 other.check("other")?;
+                refuse!(if other.node.is_some(), Key("other");
+                    found "a node", expected "a shape of a body, as a node is the round side");
                 shapes.push(("other.radius", *other));
                 refuse!(if self.round.radius + other.radius == 0.0, Key("other.radius");
                     found "no radius of either side", expected "a positive radius of one of both, as points and edges do not touch");
@@ -462,8 +467,14 @@ impl Component for Contact {
         self.ends().to_vec()
     }
 
+    fn nodes(&self) -> Vec<[usize; 2]> {
+        self.round.node.into_iter().collect()
+    }
+
     fn outlines(&self) -> Vec<Vec<Attachment>> {
+        // A block draws its nodes itself.
         let shapes = self.shapes().into_iter();
+        let shapes = shapes.filter(|shape| shape.node.is_none());
         let line = |shape: ContactShape| {
             let line = shape.outline().into_iter();
             line.map(|step| from(&shape.centre, step)).collect()

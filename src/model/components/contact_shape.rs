@@ -6,11 +6,13 @@ use crate::model::system::bodies::Attachment;
 use crate::model::system::joints::triad;
 use nalgebra::Vector3;
 
-/// A point, sphere, capsule or box with round edges of a body or of the ground.
+/// A point, sphere, capsule or box with round edges of a body or of the ground, or a node of an elastic block.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ContactShape {
-    /// Its centre.
+    /// Its centre, on no body where it is a node.
     pub centre: Attachment,
+    /// An elastic block and its node that is the centre.
+    pub node: Option<[usize; 2]>,
     /// Radius in mm of all that is round; zero of a point and of a box with sharp edges.
     pub radius: f64,
     /// Half axes of the core in mm in the reference configuration, at right angles; zero where there are fewer.
@@ -62,9 +64,9 @@ impl ContactShape {
         }
     }
 
-    /// Two shapes, that with fewer axes first, which is the round side.
+    /// Two shapes, a node or else that with fewer axes first, which is the round side.
     pub fn by_axes(mut shapes: [Self; 2]) -> [Self; 2] {
-        shapes.sort_by_key(|shape| shape.own_axes().len());
+        shapes.sort_by_key(|shape| (shape.node.is_none(), shape.own_axes().len()));
         shapes
     }
 
@@ -87,6 +89,8 @@ impl ContactShape {
     pub(super) fn check(&self, key: &'static str) -> Result<(), Fault> {
         not_negative(format!("{key}.radius"), self.radius)?;
         let axes = self.own_axes();
+        refuse!(if self.node.is_some() && (!axes.is_empty() || self.centre.body.is_some()), Key(key);
+            found "a node with axes or a body", expected "a point or a sphere about the node");
         let lengths = axes.iter().map(Vector3::norm);
         refuse!(unless lengths.clone().all(f64::is_finite), Key(key);
             found "an axis of no finite length", expected "finite axes");

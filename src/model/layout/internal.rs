@@ -4,7 +4,7 @@
 
 use crate::element::COORDINATES;
 use crate::functional::POINTS;
-use crate::kinematics::MaterialVector;
+use crate::kinematics::{MaterialVector, Vectors};
 use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::components::LoadPlace;
 use crate::model::layout::solid_block::SolidBlock;
@@ -131,6 +131,7 @@ impl Internals {
         coordinates: Coordinates,
         graph: &Graph,
         blocks: &Solids,
+        vectors: &Vectors,
     ) -> Self {
         let system = &presolved.system;
         let nodes = blocks.nodes.iter().flat_map(|node| node.free);
@@ -171,7 +172,10 @@ impl Internals {
         let contacts = scene.components.contacts.iter();
         let sticking = contacts.filter(|one| {
             let [a, b] = one.ends().map(|end| presolved.carrier(end.body));
-            analysis.of_motion && a != b && one.bristles() > 0
+            let mut node = one.round.node.iter();
+            let node_moves =
+                node.any(|&[block, node]| vectors.moves(blocks.list[block].vectors[node]));
+            analysis.of_motion && (a != b || node_moves) && one.bristles() > 0
         });
         for contact in sticking {
             let components = 0..contact.bristles();

@@ -94,11 +94,20 @@ impl Parts {
             }
         }
         for component in system.components.iter() {
-            for pair in bodies_of(component).windows(2) {
+            for pair in self.tied(component).windows(2) {
                 join(Some(pair[0]), pair[1]);
             }
         }
         sets
+    }
+
+    /// Bodies and blocks to which a component is attached.
+    fn tied(self, component: &dyn Component) -> Vec<usize> {
+        let points = component.points().into_iter();
+        let bodies = points.filter_map(|point| point.body);
+        let solids = component.nodes().into_iter();
+        let solids = solids.map(|[solid, _]| self.solid(solid));
+        bodies.chain(solids).collect()
     }
 
     /// Parts that move by themselves: a force acts on them, or they are set in motion.
@@ -112,7 +121,7 @@ impl Parts {
         let mut moved: Vec<usize> = Vec::new();
         for (index, component) in system.components.iter().enumerate() {
             if component.is_prestressed() || is_sought_length(system, index, analysis) {
-                moved.extend(bodies_of(component));
+                moved.extend(self.tied(component));
             }
         }
         for (source, load) in scene.loads() {
@@ -150,12 +159,6 @@ impl Parts {
         }
         moved
     }
-}
-
-/// Bodies to which a component is attached.
-fn bodies_of(component: &dyn Component) -> Vec<usize> {
-    let points = component.points();
-    points.iter().filter_map(|point| point.body).collect()
 }
 
 /// Returns true if the length without force of a component, or that between its ends, is a free parameter; springs come before tendons.

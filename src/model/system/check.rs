@@ -3,6 +3,7 @@
 use crate::math::{
     DIRECTION, Fault, Key, Vector, WHOLE, not_negative, positive, refuse, shortest, unique,
 };
+use crate::model::components::component::Component;
 use crate::model::components::{BlockLoad, Load, LoadPlace};
 use crate::model::system::circuit::Circuit;
 use crate::model::system::{
@@ -79,10 +80,19 @@ impl System {
             let mut points = points.iter().map(|point| self.check_point("", point));
             let checked = points.try_for_each(|checked| checked);
             checked
+                .and_then(|()| self.check_nodes(component))
                 .and_then(|()| component.check())
                 .map_err(|fault| refused(part, fault))?;
         }
         Ok(())
+    }
+
+    fn check_nodes(&self, component: &dyn Component) -> Checked {
+        let mut nodes = component.nodes().into_iter();
+        nodes.try_for_each(|[solid, node]| {
+            check_index("node", "solid", solid, self.solids.len())?;
+            check_index("node", "node", node, self.solids[solid].mesh.nodes.len())
+        })
     }
 
     fn check_joint(&self, joint: &Joint) -> Checked {

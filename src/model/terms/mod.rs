@@ -55,6 +55,8 @@ pub struct Terms<'a> {
     gravity: Option<Vector>,
     vectors: &'a mut Vectors,
     variables: &'a Variables,
+    /// Vectors of the nodes of each elastic block.
+    nodes: Vec<&'a [usize]>,
     of_motion: bool,
     response: Response,
     sought: Sought,
@@ -144,6 +146,7 @@ impl<'a> Terms<'a> {
         vectors: &'a mut Vectors,
     ) -> Self {
         Self {
+            nodes: Vec::new(),
             bodies,
             gravity,
             vectors,
@@ -226,6 +229,21 @@ impl<'a> Terms<'a> {
             let span = MaterialVector::span(&self.point(from), &self.point(to));
             self.vectors.index(span)
         })
+    }
+
+    /// With the vectors of the nodes of each elastic block.
+    pub(super) fn with_nodes(mut self, nodes: impl Iterator<Item = &'a [usize]>) -> Self {
+        self.nodes = nodes.collect();
+        self
+    }
+
+    /// Index of the vector from a point to the node of an elastic block; `None` where both stay as they are.
+    pub(super) fn span_to_node(&mut self, from: &Attachment, node: [usize; 2]) -> Option<usize> {
+        let [block, node] = node;
+        let to = self.nodes[block][node];
+        let span = MaterialVector::span(&self.point(from), &self.vectors.list()[to]);
+        let span = self.vectors.index(span);
+        self.moves(span).then_some(span)
     }
 
     /// Index of a vector that stays as it is.
