@@ -309,6 +309,22 @@ MuscleModel: TypeAlias = "Literal['lumped', 'finite_elements']"
 """Model of a muscle."""
 
 
+class NodesShape(TypedDict):
+    """Nodes of an elastic block: those of a `face`, in a `plane` or in a `box`."""
+
+    box: NotRequired[Corners]
+    """Box."""
+
+    face: NotRequired[Text]
+    """Name of a face of a box, or of a physical group of a mesh."""
+
+    plane: NotRequired[Plane]
+    """Plane at right angles to an axis."""
+
+    solid: Text
+    """Name of the block."""
+
+
 class Normal(TypedDict):
     """A plane."""
 

@@ -389,12 +389,13 @@ class Tendon(Part):
 
 
 class ContactShape(Part):
-    """A shape that contacts name: a `sphere`, `capsule`, `box` or `plane` of a body.
+    """A shape that contacts name: a `sphere`, `capsule`, `box` or `plane` of a body, or `nodes` of an elastic block.
 
     * `body`: Name of the body, or `ground`; the ground where not written.
     * `box`: A box.
     * `capsule`: A cylinder between two half spheres.
     * `group`: Name of the shapes that contacts mean together.
+    * `nodes`: Nodes of an elastic block, each a point.
     * `plane`: A plane, which reaches to infinity.
     * `sphere`: A sphere, or a point.
     """
@@ -409,6 +410,7 @@ class ContactShape(Part):
         box: entries.BoxShape | None = None,
         capsule: entries.CapsuleShape | None = None,
         group: Text | None = None,
+        nodes: entries.NodesShape | None = None,
         plane: entries.PlaneShape | None = None,
         sphere: entries.SphereShape | None = None,
     ) -> None:
@@ -419,6 +421,7 @@ class ContactShape(Part):
                 "box": box,
                 "capsule": capsule,
                 "group": group,
+                "nodes": nodes,
                 "plane": plane,
                 "sphere": sphere,
             },
