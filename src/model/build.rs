@@ -91,15 +91,7 @@ impl Model {
             &mut variables,
             &mut vectors,
         )?;
-        let internals = Internals::new(
-            &system,
-            &presolved,
-            &analysis,
-            coordinates,
-            &graph,
-            &blocks,
-            &vectors,
-        );
+        let internals = Internals::new(&system, &presolved, &analysis, &graph, &blocks, &vectors);
         let loops = Loops::new(rest, &graph, &reference, length(rest, &blocks.nodes))?;
         let spans = spans(&system, &presolved, &reference, &mut vectors);
         let construction = Construction {

@@ -97,7 +97,7 @@ pub(crate) struct NamedShape {
     pub(crate) kind: ShapeKind,
 }
 
-/// What touches.
+/// Shape of one of the kinds, or nodes.
 #[derive(Clone, Debug)]
 pub(crate) enum ShapeKind {
     /// A plane.

@@ -128,11 +128,11 @@ impl Internals {
         scene: &System,
         presolved: &Presolved,
         analysis: &Analysis,
-        coordinates: Coordinates,
         graph: &Graph,
         blocks: &Solids,
         vectors: &Vectors,
     ) -> Self {
+        let coordinates = analysis.coordinates.unwrap_or(Coordinates::Reduced);
         let system = &presolved.system;
         let nodes = blocks.nodes.iter().flat_map(|node| node.free);
         let of_nodes = nodes.filter(|&is_free| is_free).count();
