@@ -140,10 +140,10 @@ impl CoordinateMap {
         let of_nodes = |(index, vector): (usize, &MaterialVector)| {
             let is_node = |term: &&VectorTerm| matches!(term.carrier, Carrier::Node(_));
             let terms: Vec<_> = vector.terms.iter().filter(is_node).copied().collect();
-            let is_meant = vector.is_on_tree() && !terms.is_empty();
-            is_meant.then(|| (index, linear(&MaterialVector { terms }, nodes, &parts)))
+            (!terms.is_empty()).then(|| (index, linear(&MaterialVector { terms }, nodes, &parts)))
         };
-        let beside: Vec<_> = vectors.iter().enumerate().filter_map(of_nodes).collect();
+        let on_tree = vectors.iter().enumerate().filter(|(_, v)| v.is_on_tree());
+        let beside: Vec<_> = on_tree.filter_map(of_nodes).collect();
         tree.widen(beside.iter().map(|(v, of)| (*v, of.support())));
         let dependence = |(vector, packed): (&MaterialVector, &TangentColumns)| {
             if vector.is_on_tree() {
