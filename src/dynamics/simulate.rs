@@ -2,7 +2,7 @@
 
 use crate::dynamics::momenta::Start;
 use crate::dynamics::solving::{Drive, Integrator, Solving};
-use crate::dynamics::stepper::{Equations, Steps};
+use crate::dynamics::stepper::{Allowed, Equations, Steps};
 use crate::dynamics::trajectory::{DiscreteTrajectory, Reading};
 use crate::dynamics::{StepError, Stepper};
 use crate::model::{Model, OPEN};
@@ -275,8 +275,12 @@ impl StepControl<'_> {
             true => AT_JUMPS * tolerance / (1 + switches.len()) as f64,
             false => 0.0,
         };
-        let allowed = [tolerance / duration, at_jump];
-        let taken = stepper.step_within([time, to], h, LEAST * duration, allowed, drive);
+        let allowed = Allowed {
+            shortest: LEAST * duration,
+            error_per_ms: tolerance / duration,
+            error: at_jump,
+        };
+        let taken = stepper.step_within([time, to], h, allowed, drive);
         Some(taken.map(|[taken, next]| Taken {
             step: [time, if taken == left { end } else { time + taken }],
             multipliers: stepper.equations.now().multipliers.to_vec(),
@@ -302,17 +306,16 @@ fn factor(used: f64) -> f64 {
 }
 
 impl<E: Equations> Steps<E> {
-    /// Goes on between two times of the drive by at most all of the `h` ms, with a local error that is allowed per ms and at least; returns
-    /// how far it went and how far it would go next.
+    /// Goes on between two times of the drive by at most all of the `h` ms, within limits; returns how far it went and how far it would go
+    /// next.
     ///
     /// # Errors
-    /// Steps down to `least` ms fail; the state is then that of the last accepted step.
+    /// Steps down to the shortest one fail; the state is then that of the last accepted step.
     fn step_within(
         &mut self,
         [from, to]: [f64; 2],
         h: f64,
-        least: f64,
-        allowed: [f64; 2],
+        allowed: Allowed,
         drive: &dyn Drive,
     ) -> Result<[f64; 2], StepError> {
         self.allowed = Some(allowed);
@@ -338,7 +341,7 @@ impl<E: Equations> Steps<E> {
             };
             // A step ends where a contact begins or ends.
             let shorter = part * self.touch.map_or(by_error, |touch| touch.min(by_error));
-            if shorter < least {
+            if shorter < allowed.shortest {
                 if !self.updates.make_double() {
                     return Err(error);
                 }

@@ -22,6 +22,17 @@ const HALVINGS: u32 = 10;
 /// Limit of iterations with a reused tangent.
 const REUSED: usize = 40;
 
+/// Limits of a step that a tolerance controls.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Allowed {
+    /// Length in ms of the shortest step.
+    pub(super) shortest: f64,
+    /// Local error per ms.
+    pub(super) error_per_ms: f64,
+    /// Local error of a step, where that per ms is less.
+    pub(super) error: f64,
+}
+
 /// State at one instant and the means to go on from it.
 #[derive(Debug)]
 pub struct Steps<E> {
@@ -34,8 +45,8 @@ pub struct Steps<E> {
     pub(super) residual: Vec<f64>,
     /// Unknowns whose values are prescribed.
     held: Vec<usize>,
-    /// Local error that is allowed per ms, and at least in a step; none of steps of given length.
-    pub(super) allowed: Option<[f64; 2]>,
+    /// Limits of steps that a tolerance controls; none of steps of given length.
+    pub(super) allowed: Option<Allowed>,
     /// Local error of the last attempt as a part of the allowed one.
     pub(super) used: f64,
     /// Part of the last attempt after which a contact begins or ends, where a tolerance controls the steps.
@@ -315,14 +326,16 @@ impl<E: Equations> Steps<E> {
                     .then_some(StepError::Inverted { time, step })
             }
         };
-        let allowed = self.allowed.filter(|_| refusal.is_none());
-        let allowed = allowed.map(|[per_time, least]| f64::max(per_time * step, least));
-        let Some(allowed) = allowed else {
+        let limits = self.allowed.filter(|_| refusal.is_none());
+        let Some(limits) = limits else {
             return refusal;
         };
+        let allowed = limits.error.max(limits.error_per_ms * step);
         let error = self.equations.local_error(step);
         self.used = error / allowed;
-        self.touch = part_to_touch(self.equations.model(), self.equations.ends());
+        // A contact that changes within the shortest step does so at the start.
+        self.touch = part_to_touch(self.equations.model(), self.equations.ends())
+            .filter(|part| part * step >= limits.shortest);
         (error > allowed || self.touch.is_some()).then_some(StepError::Inaccurate {
             time,
             step,

@@ -56,18 +56,12 @@ pub(super) fn ties<'a>(run: &Run<'a>, instants: &[usize]) -> Vec<MovingLine<'a>>
     let components = &run.system.components;
     let outlines = |one: &'a dyn Component| one.outlines().into_iter().map(move |line| (one, line));
     let contacts = &components.contacts;
-    let planes = contacts.iter().filter_map(|one: &'a Contact| {
-        let line = one.plane_outline(contacts)?;
-        Some((one as &dyn Component, line))
+    let touching = contacts.iter().flat_map(|one: &'a Contact| {
+        let lines = one.drawn_among(contacts).into_iter();
+        lines.map(move |line| (one as &dyn Component, line))
     });
-    // A shape that touches several others is drawn once.
-    let mut lines: Vec<(&dyn Component, Vec<Attachment>)> = Vec::new();
-    for line in components.iter().flat_map(outlines).chain(planes) {
-        if !lines.iter().any(|known| known.1 == line.1) {
-            lines.push(line);
-        }
-    }
-    lines.into_iter().map(tie).collect()
+    let lines = components.iter().flat_map(outlines).chain(touching);
+    lines.map(tie).collect()
 }
 
 /// The arrows of loads that ever act at some instants, of each always as many points.

@@ -356,8 +356,21 @@ impl Contact {
         (friction, vectors)
     }
 
+    /// Lines that show its shapes and its plane, but those that one of these contacts before it draws, and nodes, which their block draws.
+    pub fn drawn_among(&self, contacts: &[Self]) -> Vec<Vec<Attachment>> {
+        let before = contacts.iter().take_while(|one| one.name != self.name);
+        let drawn: Vec<_> = before.flat_map(Self::shapes).collect();
+        let is_new = |shape: &ContactShape| shape.node.is_none() && !drawn.contains(shape);
+        let line = |shape: ContactShape| {
+            let line = shape.outline().into_iter();
+            line.map(|step| from(&shape.centre, step)).collect()
+        };
+        let shapes = self.shapes().into_iter().filter(is_new).map(line);
+        shapes.chain(self.plane_outline(contacts)).collect()
+    }
+
     /// A square on the plane of the contact, as large as all of these contacts with it need, of which the first draws it.
-    pub fn plane_outline(&self, contacts: &[Self]) -> Option<Vec<Attachment>> {
+    fn plane_outline(&self, contacts: &[Self]) -> Option<Vec<Attachment>> {
         let ContactSide::Plane { at, normal } = &self.side else {
             return None;
         };
@@ -472,14 +485,7 @@ impl Component for Contact {
     }
 
     fn outlines(&self) -> Vec<Vec<Attachment>> {
-        // A block draws its nodes itself.
-        let shapes = self.shapes().into_iter();
-        let shapes = shapes.filter(|shape| shape.node.is_none());
-        let line = |shape: ContactShape| {
-            let line = shape.outline().into_iter();
-            line.map(|step| from(&shape.centre, step)).collect()
-        };
-        shapes.map(line).collect()
+        Vec::new()
     }
 
     fn check(&self) -> Result<(), Fault> {
