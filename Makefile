@@ -65,14 +65,13 @@ test: install-deps
 test-python: install-deps
 	@python/test
 
-# Links `tests/units`, which compiles files of the library again, and runs what calls Ipopt or MUMPS, but not thousands of times. The dependencies are
-# those of other tests, built by this machine first: what Debian 13 builds may need its C library. The library is not optimised, in a quarter of the
-# time, and kept apart from theirs. Cargo before 1.91 does not know the first variable, and builds the dependencies too.
+# The dependencies are those of other tests, built by this machine first: what Debian 13 builds may need its C library. Cargo before 1.91 does not know
+# the first variable, and builds them too.
+test-debian-13: SOLVER := $(CARGO) test --locked $(TEST_PACKAGES) -p proboscis-solver --test alone
 test-debian-13: install-deps
-	@$(CARGO) test --locked $(TEST_PACKAGES) --no-run
+	@$(SOLVER) --no-run
 	@export CARGO_BUILD_BUILD_DIR=$${CARGO_TARGET_DIR:-target} && export CARGO_TARGET_DIR=$$CARGO_BUILD_BUILD_DIR/debian-13 && \
-	  .ci/in-debian-13 env -u CLIPPY_ARGS $(CARGO) test --locked $(TEST_PACKAGES) --config 'profile.dev.package.proboscis.opt-level=0' --test solver --test units -- \
-	  ipopt again:: linear_solver:: ma57_adapter:: mpi:: one_mumps:: stopped::a_limit sparse::threads --skip random_goals
+	  .ci/in-debian-13 env -u CLIPPY_ARGS $(SOLVER) -- ipopt ma57_adapter:: mpi:: one_mumps:: stopped::a_limit sparse::threads
 
 test-browser:
 	@.ci/install --browser
