@@ -1,5 +1,9 @@
 //! The files of the library that call Ipopt or MUMPS, and what they need.
-#![allow(dead_code, unused_imports, reason = "the rest of the library is not here")]
+#![allow(
+    dead_code,
+    unused_imports,
+    reason = "the rest of the library is not here"
+)]
 
 #[path = "src/ipopt/mod.rs"]
 pub mod ipopt;

@@ -1,5 +1,9 @@
 //! Those tests of `tests/solver` that need no robot.
-#![allow(dead_code, unreachable_pub, reason = "a part of those files is used here")]
+#![allow(
+    dead_code,
+    unreachable_pub,
+    reason = "a part of those files is used here"
+)]
 
 #[path = "."]
 mod common {
