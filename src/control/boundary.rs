@@ -12,7 +12,7 @@
 //! Places and orientations of a goal or a waypoint as equations of one instant, without those that nothing can change.
 
 use crate::control::boundary_conditions::{
-    BoundaryConditions, Rests, TerminalState, check_muscles, resolve_start, rest_at,
+    BoundaryConditions, Rests, TerminalState, check_muscles, of_masses, resolve_start, rest_at,
 };
 use crate::control::costs::{resisted, sources};
 use crate::control::error::BoundaryError;
@@ -126,6 +126,7 @@ impl BoundaryConditions {
             start,
             momentum_slopes: Vec::new(),
             goal: TerminalState {
+                momentum: momentum_at_goal(&model, control, &given)?,
                 coordinates: given,
                 rests,
                 rest: of_goal,
@@ -278,6 +279,29 @@ fn coordinates_at_goal(
     Ok((given, None))
 }
 
+/// Momentum of each coordinate at a goal with rates; none of another one.
+fn momentum_at_goal(
+    model: &Model,
+    control: &Control,
+    given: &[Option<f64>],
+) -> Result<Vec<f64>, BoundaryError> {
+    if !control.goal.has_rates() {
+        return Ok(Vec::new());
+    }
+    let refused = |reason: &str| Err(BoundaryError::refused("goal.joint_rates", reason));
+    let is_open = |(i, given): (usize, &Option<f64>)| given.is_none() && !model.is_memory(i);
+    if given.iter().enumerate().any(is_open) || !model.prescribed.is_empty() {
+        return refused(
+            "rates at the end need a goal that gives the coordinates of all joints, in a scene without nodes of blocks that move, closed loops and \
+             prescribed motions",
+        );
+    }
+    if !of_masses(model).is_empty() {
+        return refused("rates at the end are for given masses: their momenta are constants");
+    }
+    Ok(resolve_start(model, &control.goal)?.momentum)
+}
+
 /// Returns true if a goal under voltages sets a coordinate that muscles remember. A voltage that is sought charges its muscle in finite time,
 /// unless it rests at a bound; nothing sets at once what others remember.
 pub(super) fn is_set_at(model: &Model, control: &Control, voltages: &[f64], i: usize) -> bool {
@@ -390,7 +414,7 @@ impl Control {
     /// Returns true if the goal names places or joint coordinates and no voltages that hold it.
     pub fn names_no_hold(&self) -> bool {
         match &self.goal {
-            BoundaryState::JointAngles { .. } => true,
+            goal @ BoundaryState::JointAngles { .. } => !goal.has_rates(),
             BoundaryState::Markers { hold, .. } => hold.is_none(),
             _ => false,
         }

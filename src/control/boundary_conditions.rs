@@ -47,6 +47,7 @@ impl BoundaryConditions {
             momentum_slopes: Vec::new(),
             goal: TerminalState {
                 coordinates: vec![None; coordinates],
+                momentum: Vec::new(),
                 rests: Rests::Nothing,
                 rest: None,
             },
@@ -85,7 +86,9 @@ pub enum Rests {
 pub struct TerminalState {
     /// Given coordinates; `None` where the optimisation decides.
     pub coordinates: Vec<Option<f64>>,
-    /// Part of the system that rests.
+    /// Momentum of each coordinate where the motion ends with given rates; none where it rests or anything may be.
+    pub momentum: Vec<f64>,
+    /// Part of the system that rests, or has these momenta.
     pub rests: Rests,
     /// The equilibrium that it is, where it is one under voltages that are named.
     pub rest: Option<Equilibrium>,

@@ -20,7 +20,7 @@ pub enum BoundaryState {
     JointAngles {
         /// Coordinates.
         angles: BTreeMap<usize, f64>,
-        /// Rates in rad/ms or mm/ms; only at a start, zero where not named.
+        /// Rates in rad/ms or mm/ms, zero where not named; at a goal only where all coordinates are given.
         rates: BTreeMap<usize, f64>,
         /// Velocity of the centre of mass in mm/ms and angular velocity in rad/ms by body, both in the ground frame; only at a start,
         /// of the first body of a free part and of those on a spherical or floating joint. Others follow from their joints.
@@ -47,6 +47,11 @@ pub enum BoundaryState {
 }
 
 impl BoundaryState {
+    /// Returns true if it gives a rate other than zero.
+    pub fn has_rates(&self) -> bool {
+        matches!(self, Self::JointAngles { rates, .. } if rates.values().any(|rate| *rate != 0.0))
+    }
+
     /// Joint coordinates by joint index, at rest.
     pub fn at_joints(angles: BTreeMap<usize, f64>) -> Self {
         Self::JointAngles {

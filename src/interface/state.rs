@@ -18,6 +18,8 @@ pub enum State {
     RestAt(Vec<(Input, f64)>),
     /// Joint coordinates in rad or mm, at rest; at a start zero where not named, at a goal free.
     Joints(Vec<(Handle<Joint>, f64)>),
+    /// Joint coordinates in rad or mm, and rates in rad/ms or mm/ms; at a start zero where not named, at a goal of all joints.
+    Moving(Vec<(Handle<Joint>, f64, f64)>),
     /// Places of markers in mm, everything at rest; a goal only.
     Markers(Vec<(Handle<Marker>, Vector3<f64>)>),
     /// Places of markers in mm, in the directions that have one, and orientations of bodies, everything at rest; a goal only.
@@ -53,17 +55,15 @@ impl State {
                 let row = row(voltages, "state", system)?;
                 BoundaryState::RestAtVoltages(row, Rest::Everything)
             }
-            Self::Joints(values) => {
-                for &(joint, value) in values {
-                    let joints = &system.joints;
-                    let named = joints.get(joint.index());
-                    let holds = named.is_some_and(|j| j.has_coordinate()) && value.is_finite();
-                    refuse!(unless holds, Entry("state");
-                        found format!("{value} of joint {}", joint.index()),
-                        expected "a finite value of a joint with one coordinate");
+            Self::Joints(values) => BoundaryState::at_joints(of_joints(values, system)?),
+            Self::Moving(values) => {
+                let angles = values.iter().map(|&(joint, value, _)| (joint, value));
+                let rates = values.iter().map(|&(joint, _, rate)| (joint, rate));
+                BoundaryState::JointAngles {
+                    angles: of_joints(&Vec::from_iter(angles), system)?,
+                    rates: of_joints(&Vec::from_iter(rates), system)?,
+                    velocities: BTreeMap::new(),
                 }
-                let values = values.iter().map(|&(joint, value)| (joint.index(), value));
-                BoundaryState::at_joints(values.collect())
             }
             Self::Free => BoundaryState::Free,
             Self::Periodic => BoundaryState::Periodic,
@@ -96,6 +96,21 @@ impl State {
             }
         })
     }
+}
+
+/// Finite values by joints that have one coordinate.
+fn of_joints(values: &[(Handle<Joint>, f64)], system: &System) -> Result<BTreeMap<usize, f64>> {
+    for &(joint, value) in values {
+        let named = system.joints.get(joint.index());
+        let holds = named.is_some_and(Joint::has_coordinate) && value.is_finite();
+        refuse!(unless holds, Entry("state");
+            found format!("{value} of joint {}", joint.index()),
+            expected "a finite value of a joint with one coordinate");
+    }
+    let values = values.iter();
+    Ok(values
+        .map(|&(joint, value)| (joint.index(), value))
+        .collect())
 }
 
 /// Everything at rest, at places of markers and orientations of bodies.

@@ -334,6 +334,11 @@ pub fn check(system: &System, control: &Control) -> Result<(), (String, String)>
     if control.varied.is_empty() {
         return Ok(());
     }
+    if control.goal.has_rates() {
+        let name = control.varied[0].name.clone();
+        let reason = "the motion ends with given rates, for which derivatives are not offered";
+        return Err((name, reason.to_owned()));
+    }
     let constants = control.varied.iter().filter_map(Varied::parameter);
     let mut held = control.clone();
     held.parameters.extend(constants.cloned());

@@ -36,6 +36,7 @@ mod measured;
 mod meshes;
 mod motions;
 mod motions_shared;
+mod moving_ends;
 mod optimality;
 mod peak_voltage;
 mod periodic;

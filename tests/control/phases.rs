@@ -28,7 +28,7 @@ pub(crate) fn solved(problem: &Value) -> MotionsResult {
 }
 
 /// A cart of 1 kg on a rail along x, which a force drives; from rest to rest over 1 m in 1 s.
-fn cart(control: &Value) -> Value {
+pub(crate) fn cart(control: &Value) -> Value {
     let mut problem = json!({
         "scene": {
             "name": "cart",

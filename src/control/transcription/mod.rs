@@ -53,7 +53,7 @@ pub struct Transcription<'m> {
     bounds: Bounds,
     row_bounds: Bounds,
     /// Momentum of the start.
-    momentum: StartMomentum,
+    momenta: Momenta,
     /// Second derivatives of an interval that are asked for.
     sides: BlockMask,
     workspace: Workspace,
@@ -89,7 +89,7 @@ impl<'m> Transcription<'m> {
         let objective = Objective::new(model, boundary, control, &layout);
         let structure = Structure::new(model, &layout, &objective)?;
         let workspace = Workspace::new(model, boundary, control, initial, &layout);
-        let momentum = StartMomentum::new(model, boundary, &layout, &structure);
+        let momenta = Momenta::new(model, boundary, &layout, &structure);
         let mut out = Self {
             model,
             variable_scales: Self::variable_scales(model, &layout, control, initial.h),
@@ -98,7 +98,7 @@ impl<'m> Transcription<'m> {
             structure,
             bounds: Bounds::default(),
             row_bounds: Bounds::default(),
-            momentum,
+            momenta,
             layout,
             sides: BlockMask::ALL,
             workspace,
@@ -169,12 +169,15 @@ impl<'m> Transcription<'m> {
     }
 }
 
-/// Momenta of the start: those at the values of the parameters at the start, and straight lines in these.
+/// Momenta of the start, those at the values of the parameters at the start and straight lines in these, and of the goal.
 #[derive(Debug)]
-struct StartMomentum {
-    /// Momentum of each coordinate.
+struct Momenta {
+    /// Momentum of each coordinate at the start.
     given: Vec<f64>,
     lines: Vec<Line>,
+    /// The last instant, and the momentum of each coordinate there; none where it rests.
+    end: usize,
+    goal: Vec<f64>,
 }
 
 /// Change of the momenta with a parameter.
@@ -190,7 +193,7 @@ struct Line {
     entries: Vec<(usize, usize)>,
 }
 
-impl StartMomentum {
+impl Momenta {
     fn new(
         model: &Model,
         boundary: &BoundaryConditions,
@@ -201,6 +204,8 @@ impl StartMomentum {
             return Self {
                 given: vec![0.0; boundary.start.momentum.len()],
                 lines: Vec::new(),
+                end: layout.span.end,
+                goal: Vec::new(),
             };
         }
         let pattern = model.action.layout();
@@ -224,12 +229,18 @@ impl StartMomentum {
         Self {
             given: boundary.start.momentum.clone(),
             lines: lines.collect(),
+            end: layout.span.end,
+            goal: boundary.goal.momentum.clone(),
         }
     }
 
-    /// The momentum of a coordinate at a point, whose columns have these scales.
-    fn at(&self, i: usize, x: &[f64], scales: &[f64]) -> f64 {
-        let Some(given) = self.given.get(i) else {
+    /// The part of the balance of coordinate `i` at instant `k` at a point, whose columns have these scales: the momentum that the start brings, and
+    /// the goal takes away.
+    fn at(&self, k: usize, i: usize, x: &[f64], scales: &[f64]) -> f64 {
+        if k == self.end {
+            return -self.goal.get(i).unwrap_or(&0.0);
+        }
+        let Some(given) = self.given.get(i).filter(|_| k == 0) else {
             return 0.0;
         };
         let of = |line: &Line| line.slopes[i] * (x[line.column] * scales[line.column] - line.value);

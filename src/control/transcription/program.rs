@@ -80,15 +80,12 @@ impl Nlp for Transcription<'_> {
             *value = scale
                 * match *row {
                     Row::Instant { k, i } => {
-                        let start = match k {
-                            0 => self.momentum.at(i, x, &self.variable_scales),
-                            _ => 0.0,
-                        };
+                        let momentum = self.momenta.at(k, i, x, &self.variable_scales);
                         let again = match span.is_closed && k == 0 && i < coordinates {
                             true => self.workspace.rows[span.all * stride + i],
                             false => 0.0,
                         };
-                        self.workspace.rows[k * stride + i] + start + again
+                        self.workspace.rows[k * stride + i] + momentum + again
                     }
                     Row::Interval { k, s } => self.workspace.rows[k * stride + count + s],
                     Row::Time { place, .. } => self.time_value(place, x),
@@ -105,7 +102,7 @@ impl Nlp for Transcription<'_> {
         for (value, kept) in values.iter_mut().zip(&self.structure.jacobian.kept) {
             *value = kept.scale * self.workspace.values[kept.place];
         }
-        for (entry, slope) in self.momentum.slopes() {
+        for (entry, slope) in self.momenta.slopes() {
             values[entry] += self.structure.jacobian.kept[entry].scale * slope;
         }
     }

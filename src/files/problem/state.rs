@@ -110,13 +110,13 @@ read_objects! {
         pub angular: Option<[Quantity<AngularVelocity>; 3]>,
     }
 
-    /// `"free"`, `"periodic"`, or a state at the end, at rest.
+    /// `"free"`, `"periodic"`, or a state at the end.
     pub either GoalSpec(
         "\"free\", \"periodic\", or an object with \"rest_at_voltages\", \"joint_angles\", \"markers\" or \"orientations\""
     ) {
         /// Anything, in motion or at rest, or the start, which is sought.
         Word: GoalWord,
-        /// A state of rest.
+        /// A state, at rest where it has no rates.
         Rest: Box<RestGoalSpec>,
     }
 
@@ -135,6 +135,7 @@ pub(crate) fn sought_hold(goal: Option<&GoalSpec>) -> SoughtHold {
         return SoughtHold::default();
     };
     match rest.hold {
+        _ if rest.joint_rates.is_some() => SoughtHold::Never,
         Some(HeldSpec::Word(HeldWord::Find)) => SoughtHold::Always,
         Some(HeldSpec::Word(HeldWord::None)) => SoughtHold::Never,
         Some(HeldSpec::Given(_)) | None => SoughtHold::default(),
@@ -142,12 +143,14 @@ pub(crate) fn sought_hold(goal: Option<&GoalSpec>) -> SoughtHold {
 }
 
 read_objects! {
-    /// A state at the end, at rest: `rest_at_voltages`, or `joint_angles`, or `markers` and `orientations`.
+    /// A state at the end: `rest_at_voltages`, or `joint_angles`, or `markers` and `orientations`; at rest where it has no `joint_rates`.
     pub struct RestGoalSpec {
         /// Static equilibrium under these voltages, SI unit V; 0 where not named.
         pub rest_at_voltages: Option<VoltageMap>,
         /// Joint coordinates by joint, SI unit rad or m; free where not named.
         pub joint_angles: Option<BTreeMap<String, Quantity<JointCoordinate>>>,
+        /// Rates by joint with which the motion ends, SI unit rad/s or m/s; 0 where not named. Beside `joint_angles` of all joints.
+        pub joint_rates: Option<BTreeMap<String, Quantity<JointRate>>>,
         /// Positions by marker, SI unit m; directions that are `null` are free.
         pub markers: Option<BTreeMap<String, PartialPoint>>,
         /// Orientations by body.
@@ -223,7 +226,7 @@ pub(crate) fn goal_state(spec: &GoalSpec, at: &At<'_>) -> Result<BoundaryState> 
     let rest = spec.rest.map_or(Rest::Attainable, Rest::from);
     match (&spec.rest_at_voltages, &spec.joint_angles) {
         (Some(map), _) => equilibrium(map, rest, at),
-        (None, Some(_)) => coordinates(spec, &at.key(key)),
+        (None, Some(_)) => coordinates(spec, at),
         (None, None) => positions(spec, rest, at),
     }
 }
@@ -248,6 +251,10 @@ fn given_key(spec: &RestGoalSpec, at: &Scope<'_>) -> Result<&'static str> {
 /// Refuses `hold` and `rest` where they have no meaning next to `key`.
 fn check_companions(spec: &RestGoalSpec, key: &str, at: &Scope<'_>) -> Result<()> {
     let is_of_angles = spec.joint_angles.is_some();
+    refuse!(if spec.joint_rates.is_some() && !is_of_angles, at.key("joint_rates");
+        found format!("\"joint_rates\" beside {key:?}"), expected "them beside \"joint_angles\" of all joints");
+    refuse!(if spec.joint_rates.is_some() && spec.hold.is_some(), at.key("hold");
+        found "\"hold\" beside \"joint_rates\"", expected "one of them: a state in motion is not held");
     let (is_ignored, expected) = match &spec.hold {
         Some(HeldSpec::Word(_)) => (
             !is_of_places(spec) && !is_of_angles,
@@ -288,12 +295,18 @@ fn positions(spec: &RestGoalSpec, rest: Rest, at: &At<'_>) -> Result<BoundarySta
     })
 }
 
-/// Coordinates of joints, whose map stands here.
+/// Coordinates of joints, and rates.
 fn coordinates(spec: &RestGoalSpec, at: &At<'_>) -> Result<BoundaryState> {
-    let angles = at.by_joint(&spec.joint_angles)?;
-    refuse!(if angles.is_empty(), at;
+    let place = at.key("joint_angles");
+    let angles = place.by_joint(&spec.joint_angles)?;
+    refuse!(if angles.is_empty(), place;
         found "no joint", expected "the coordinate of a joint or more");
-    Ok(BoundaryState::at_joints(angles))
+    let rates = at.key("joint_rates").by_joint(&spec.joint_rates)?;
+    Ok(BoundaryState::JointAngles {
+        angles,
+        rates,
+        velocities: BTreeMap::new(),
+    })
 }
 
 /// Places by marker; of a map that is written one or more.
