@@ -56,6 +56,17 @@ pub(crate) enum Command {
         #[arg(long, value_name = "MUSCLE=VOLTAGE", value_delimiter = ',')]
         voltages: Option<Vec<String>>,
     },
+    /// Find natural frequencies, damping ratios and shapes of vibrations about the state of rest of a problem, or of any scene under given voltages.
+    Modes {
+        #[command(flatten)]
+        problem: Problem,
+        /// Voltages such as muscle2=1.7kV,muscle3=1.6kV; 0 where not named.
+        #[arg(long, value_name = "MUSCLE=VOLTAGE", value_delimiter = ',')]
+        voltages: Option<Vec<String>>,
+        /// Number of vibrations, those of lowest frequencies.
+        #[arg(long, value_name = "N", default_value_t = 6)]
+        count: usize,
+    },
     /// Show the model of a problem: terms, unknowns, equations, nonzeros.
     Inspect {
         #[command(flatten)]

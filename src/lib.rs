@@ -108,7 +108,7 @@ pub mod workflow;
 
 pub use control::problem::{OutcomeOf, Varied, VariedOf, WeightOf};
 pub use control::{EarlierSolution, Orientation, Solution};
-pub use dynamics::Integrator;
+pub use dynamics::{Integrator, Vibration};
 pub use energy::Energy;
 pub use functional::Element;
 pub use identify::{Identified, IdentifyError};

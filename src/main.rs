@@ -134,7 +134,17 @@ fn answer(command: Command) -> Result<CommandOutput, CommandError> {
         Command::Equilibrium { problem, voltages } => {
             let json = problem.json();
             output_of(json, &problem.request(), |request| {
-                app::equilibrium_of_file(request, voltages.as_deref())
+                app::equilibrium_of_file(request, voltages.as_deref(), None)
+            })
+        }
+        Command::Modes {
+            problem,
+            voltages,
+            count,
+        } => {
+            let json = problem.json();
+            output_of(json, &problem.request(), |request| {
+                app::equilibrium_of_file(request, voltages.as_deref(), Some(count))
             })
         }
         Command::Inspect { input, output } => app::inspect(&CommandInput {

@@ -196,7 +196,9 @@ class Questions:
         self,
         *,
         coordinates: entries.Coordinates | None = None,
+        frequency_response: entries.FrequencyResponse | None = None,
         loads: Mapping[Any, Quantity] | None = None,
+        modes: int | None = None,
         path: int | None = None,
         response: entries.Response | None = None,
         voltages: Mapping[Any, Quantity] | None = None,
@@ -206,7 +208,9 @@ class Questions:
         """Finds the state of rest with these entries of `equilibrium` in a problem file; the others are those of `Problem.equilibrium`.
 
         * `coordinates`: Coordinates.
+        * `frequency_response`: Response of joints and markers to an input that oscillates about its value at rest.
         * `loads`: Loads by name, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named.
+        * `modes`: Number of vibrations about the state, those of lowest frequencies: natural frequencies, damping ratios and shapes.
         * `path`: Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as
           pull-in.
         * `response`: Response of Maxwell branches; `relaxed` where not written.
@@ -216,7 +220,9 @@ class Questions:
             "equilibrium",
             {
                 "coordinates": coordinates,
+                "frequency_response": frequency_response,
                 "loads": loads,
+                "modes": modes,
                 "path": path,
                 "response": response,
                 "voltages": voltages,

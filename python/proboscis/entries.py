@@ -911,6 +911,18 @@ class Free(TypedDict):
     """Lower bound, in the unit of the constant."""
 
 
+FrequencyResponse = TypedDict(
+    "FrequencyResponse",
+    {
+        "from": "Quantity",
+        "input": "Text",
+        "points": "NotRequired[int]",
+        "to": "Quantity",
+    },
+)
+"""An input that oscillates, and its frequencies, whose logarithms are evenly spaced."""
+
+
 class GapLimit(TypedDict):
     """Limits of the gap of a contact, negative where both sides overlap: `min`, `max` or both. With a `min` of zero they do not touch."""
 
@@ -925,7 +937,7 @@ class GapLimit(TypedDict):
 
 
 Goal: TypeAlias = "GoalWord | RestGoal"
-"""`"free"`, `"periodic"`, or a state at the end, at rest."""
+"""`"free"`, `"periodic"`, or a state at the end."""
 
 
 GoalWord: TypeAlias = "Literal['free', 'periodic']"
@@ -1573,7 +1585,7 @@ Response: TypeAlias = "Literal['relaxed', 'instantaneous']"
 
 
 class RestGoal(TypedDict):
-    """A state at the end, at rest: `rest_at_voltages`, or `joint_angles`, or `markers` and `orientations`."""
+    """A state at the end: `rest_at_voltages`, or `joint_angles`, or `markers` and `orientations`; at rest where it has no `joint_rates`."""
 
     hold: NotRequired[Held2]
     """Voltages that are held after positions of markers and orientations are reached, SI unit V; 0 where not named. Of elastic blocks the motion
@@ -1584,6 +1596,9 @@ class RestGoal(TypedDict):
 
     joint_angles: NotRequired[Mapping[Any, Quantity]]
     """Joint coordinates by joint, SI unit rad or m; free where not named."""
+
+    joint_rates: NotRequired[Mapping[Any, Quantity]]
+    """Rates by joint with which the motion ends, SI unit rad/s or m/s; 0 where not named. Beside `joint_angles` of all joints."""
 
     markers: NotRequired[Mapping[Any, Sequence[Quantity | None] | Numbers]]
     """Positions by marker, SI unit m; directions that are `null` are free."""
@@ -2027,8 +2042,14 @@ class Equilibrium(TypedDict):
     coordinates: NotRequired[Coordinates]
     """Coordinates."""
 
+    frequency_response: NotRequired[FrequencyResponse]
+    """Response of joints and markers to an input that oscillates about its value at rest."""
+
     loads: NotRequired[Mapping[Any, Quantity]]
     """Loads by name, SI units N, N m, Pa, N/m³ and C/m²; 0 where not named."""
+
+    modes: NotRequired[int]
+    """Number of vibrations about the state, those of lowest frequencies: natural frequencies, damping ratios and shapes."""
 
     path: NotRequired[int]
     """Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as pull-in."""

@@ -141,6 +141,19 @@ class Result:
         return self._table("tracking.csv")
 
     @property
+    def modes(self) -> list[dict[str, Any]]:
+        """Vibrations about a state of rest by their frequencies: `frequency` in Hz, `damping_ratio`, and what `moves`."""
+        if "vibrations" not in self.summary:
+            raise Error("modes: only the result of an equilibrium with modes or frequency_response has them")
+        modes: list[dict[str, Any]] = self.summary["vibrations"]["modes"]
+        return modes
+
+    @cached_property
+    def frequency_response(self) -> Table:
+        """Amplitude and phase of each joint and marker, for a unit of the input (kV, N, N mm), one row per frequency."""
+        return self._table("frequency_response.csv")
+
+    @property
     def time(self) -> Array:
         """Instants of a motion in s."""
         return self.table["time"]

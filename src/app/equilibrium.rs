@@ -8,12 +8,12 @@ use crate::app::kept::record::{make_folder_of, refuse_foreign};
 use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput, counted};
 use crate::app::summary::{MEASURED, Seconds, Summary, no_equilibrium, plan, refused};
-use crate::app::{blocks, fields};
-use crate::control::problem::{AtRest, Task};
+use crate::app::{blocks, fields, vibrations};
+use crate::control::problem::{AtRest, Task, VibrationRequest};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
-    DiscreteTrajectory, Equilibrium, Instability, PathStop, UNSTABLE, continuation, observations,
-    out_of_domain,
+    DiscreteTrajectory, Equilibrium, Instability, PathStop, StabilityLoss, UNSTABLE, continuation,
+    observations, out_of_domain,
 };
 use crate::files::{Entries, Loaded, driven_voltages, read_problem, read_system};
 use crate::model::{Model, Response, Role, System};
@@ -37,13 +37,14 @@ use std::path::Path;
 use std::time::Instant;
 
 /// The equilibrium that a problem asks for; under voltages such as `muscle2=1.7kV` that of a scene, or of the scene of any
-/// problem.
+/// problem. With a number of `modes` the vibrations about it too, without voltages that about the state of rest under none.
 ///
 /// # Errors
 /// The file or a voltage is wrong, or the problem asks for something else and no voltages are given.
 pub fn equilibrium_of_file(
     request: &CommandInput,
     voltages: Option<&[String]>,
+    modes: Option<usize>,
 ) -> Result<CommandOutput, CommandError> {
     let began = Instant::now();
     let _progress = Progress::of_solve(request.progress);
@@ -68,13 +69,24 @@ pub fn equilibrium_of_file(
             coordinates: None,
             response,
             path: None,
+            vibrations: modes.map(|count| VibrationRequest { count, sweep: None }),
         };
         return at(request, None, &system, &task, began);
     }
     let loaded = read_problem(&request.input, &request.set)?;
-    match &loaded.task {
-        Task::Equilibrium(task) => at(request, Some(&loaded), &loaded.system, task, began),
-        other => Err(no_equilibrium(request, other)),
+    match (&loaded.task, modes) {
+        (Task::Equilibrium(task), None) => at(request, Some(&loaded), &loaded.system, task, began),
+        (Task::Equilibrium(task), Some(count)) => {
+            let sweep = task.vibrations.as_ref().and_then(|one| one.sweep.clone());
+            let task = AtRest {
+                vibrations: Some(VibrationRequest { count, sweep }),
+                path: None,
+                ..task.clone()
+            };
+            at(request, Some(&loaded), &loaded.system, &task, began)
+        }
+        (_, Some(_)) => equilibrium_of_file(request, Some(&[]), modes),
+        (other, None) => Err(no_equilibrium(request, other)),
     }
 }
 
@@ -128,11 +140,7 @@ pub(super) fn at(
     summary.seconds = Seconds::since(began, read + result.setup);
     let output = command_output(&summary, &rest, &folder);
     summary.task = rest.entries();
-    let title = match loss {
-        None if status == UNSTABLE => "An unstable equilibrium",
-        None => "Static equilibrium",
-        Some(_) => "The last equilibrium",
-    };
+    let title = title(*loss, status);
     let mut page = summary.page(title, loaded);
     page.rows = rest.rows();
     let skins = Skins::new(model, discrete);
@@ -150,9 +158,28 @@ pub(super) fn at(
         )
     };
     write_still(&mut files, "equilibrium.csv", &run)?;
+    if let Some(found) = &result.vibrations {
+        vibrations::write(
+            found,
+            &mut files,
+            page,
+            request.figures,
+            request.page,
+            &origin,
+        )?;
+    }
     summary.seconds.wrote(began, writing);
     summary.write(files)?;
     Ok(output)
+}
+
+/// Title of the page.
+fn title(loss: Option<StabilityLoss>, status: &str) -> &'static str {
+    match loss {
+        None if status == UNSTABLE => "An unstable equilibrium",
+        None => "Static equilibrium",
+        Some(_) => "The last equilibrium",
+    }
 }
 
 /// The answer of the command; an equilibrium that is unstable or was lost has a message.

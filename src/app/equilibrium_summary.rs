@@ -3,6 +3,7 @@
 use crate::app::fields;
 use crate::app::linear_systems::multigrid;
 use crate::app::request::counted;
+use crate::app::vibrations;
 use crate::dynamics::trajectory::{Column, Observations};
 use crate::dynamics::{Instability, Load, LowestMode, Route, Softening, StabilityLoss};
 use crate::files::Entries;
@@ -160,6 +161,10 @@ impl<'a> Rest<'a> {
             .with_some("lost", lost)
             .with("newton_iterations", found.iterations)
             .with_some("multigrid", grids)
+            .with_some(
+                "vibrations",
+                self.result.vibrations.as_ref().map(vibrations::entries),
+            )
     }
 
     /// State at which the path of growing loads loses its stable equilibrium, if this one does not lie on it.
@@ -285,8 +290,9 @@ impl<'a> Rest<'a> {
             ("muscle stretches", self.stretched()),
         ];
         let rows = rows.into_iter();
-        rows.filter_map(|(name, value)| Some((name.to_owned(), value?)))
-            .collect()
+        let rows = rows.filter_map(|(name, value)| Some((name.to_owned(), value?)));
+        let modes = self.result.vibrations.iter().flat_map(vibrations::rows);
+        rows.chain(modes).collect()
     }
 
     /// The equilibrium as lines of a table.
@@ -322,6 +328,9 @@ impl<'a> Rest<'a> {
         }
         if let Some(mode) = self.softest() {
             text.push_str(&format!("softest mode  {mode}\n"));
+        }
+        if let Some(found) = &self.result.vibrations {
+            text.push_str(&vibrations::text(found));
         }
         text + &self.verdict()
     }

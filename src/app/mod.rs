@@ -7,7 +7,8 @@
 //! - `summary`: `summary.json`; `feedback_files`, `fields`: files of gains and of elastic blocks; [`report`](crate::report) writes figures, tables and
 //!   page.
 //! - `displayed_motion`: part of a motion that tables, figures and page show.
-//! - `blocks`, `comparison`, `linear_systems`, `solve_summary`, `equilibrium_summary`, `identification_summary`: texts about a result.
+//! - `blocks`, `comparison`, `linear_systems`, `solve_summary`, `equilibrium_summary`, `identification_summary`: texts about a result;
+//!   `vibrations`: its vibrations.
 //! - `progress`, `request`, `error`: common parts of commands.
 
 mod batch;
@@ -34,6 +35,7 @@ mod solve_summary;
 mod summary;
 mod task;
 mod templates;
+mod vibrations;
 
 pub(crate) use batch::{Batch, Ended, check_run_in, run_all, task_runs_at_once};
 pub use batch::{RunIn, end_with_parent};

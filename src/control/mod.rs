@@ -1,5 +1,6 @@
 //! Optimal control: direct transcription of the discrete action (DMOCC).
 
+mod at_rest;
 mod boundary;
 mod boundary_conditions;
 mod boundary_state;

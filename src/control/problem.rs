@@ -8,12 +8,13 @@ use crate::feedback::Law;
 use crate::ipopt::{LinearSolver, OptionValue};
 use crate::math::Signal;
 use crate::model::system::{InputKind, System};
-use crate::model::{Coordinates, Parameter, Response, Role, SiUnit, Variable};
+use crate::model::{Coordinates, Parameter, Role, SiUnit, Variable};
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+pub use crate::control::at_rest::{AtRest, FrequencySweep, VibrationRequest};
 pub use crate::control::boundary_state::{BoundaryState, Hold, Rest, SoughtHold};
 pub use crate::control::costs::{CostFunction, During, Objective, QuantityCost};
 pub use crate::control::costs::{EnergyCost, SourceEnergy};
@@ -63,19 +64,6 @@ impl Task {
             Self::Simulate(_) | Self::Equilibrium(_) | Self::Identify(_) => Vec::new(),
         }
     }
-}
-
-/// A static equilibrium, or the path of equilibria that leads there.
-#[derive(Clone, Debug, PartialEq)]
-pub struct AtRest {
-    /// Voltages in V, one per source.
-    pub voltages: Vec<f64>,
-    /// `None`: reduced.
-    pub coordinates: Option<Coordinates>,
-    /// Response of Maxwell branches.
-    pub response: Response,
-    /// Number of equilibria followed from zero voltage by arc length, past limit points; `None`: that under the voltages alone.
-    pub path: Option<usize>,
 }
 
 /// A forward simulation.

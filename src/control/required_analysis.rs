@@ -5,9 +5,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::control::problem::{
-    AtRest, BoundaryState, Control, Limit, Orientation, Place, Simulation,
-};
+use crate::control::problem::{BoundaryState, Control, Limit, Orientation, Place, Simulation};
 use crate::feedback::Law;
 use crate::model::system::{Attachment, Muscle, System};
 use crate::model::{Analysis, Component, InitiallyMoving, PartKind, What};
@@ -28,19 +26,6 @@ impl Simulation {
             zero_inputs: zero_inputs(system, is_driven, [&self.start]),
             initially_moving: Some(named.initially_moving),
             ..Analysis::of_motion(step)
-        }
-    }
-}
-
-impl AtRest {
-    /// The analysis of a state of rest. Its stability is computed too, that of unloaded parts included: nothing is taken to
-    /// be still.
-    pub fn analysis(&self, system: &System) -> Analysis {
-        Analysis {
-            coordinates: self.coordinates,
-            zero_inputs: zero_inputs(system, |s| self.voltages[s] != 0.0, []),
-            response: self.response,
-            ..Analysis::of_rest()
         }
     }
 }
@@ -89,7 +74,7 @@ impl Control {
 }
 
 /// Sources whose voltage is zero all the time, and at rest before and after.
-fn zero_inputs<const N: usize>(
+pub(super) fn zero_inputs<const N: usize>(
     system: &System,
     is_driven: impl Fn(usize) -> bool,
     ends: [&BoundaryState; N],

@@ -37,8 +37,9 @@ mod updates;
 
 pub use energies::{Energies, Work, energies};
 pub use equilibrium::{
-    Equilibrium, Instability, Load, LowestMode, Mode, PathStop, Route, Softening, StabilityLoss,
-    UNSTABLE, continuation, equilibrium, lowest_mode, stable_equilibrium, stable_equilibrium_by,
+    Equilibrium, Instability, Load, LowestMode, Mode, Modes, PathStop, Route, Softening,
+    StabilityLoss, UNSTABLE, Vibration, Vibrations, continuation, equilibrium, lowest_mode,
+    stable_equilibrium, stable_equilibrium_by,
 };
 pub use error::{EquilibriumError, StepError};
 pub use exchange::{EnergyExchange, SourceEnergies};

@@ -51,6 +51,14 @@ pub fn write_run(files: &mut FileSet, run: &Run<'_>) -> Result<(), WriteError> {
     write(files, run, page, texts)
 }
 
+/// Writes the page of a run alone, in place of one that was written.
+///
+/// # Errors
+/// The file cannot be written.
+pub fn write_page(files: &mut FileSet, run: &Run<'_>) -> Result<(), WriteError> {
+    files.put(PAGE, page(run))
+}
+
 /// The page of a run where it is wanted.
 fn page(run: &Run<'_>) -> Option<String> {
     let content = run.page?;

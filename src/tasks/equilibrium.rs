@@ -9,6 +9,7 @@ use crate::dynamics::{
 use crate::model::{Model, System};
 use crate::stop;
 use crate::tasks::check::moved_markers;
+use crate::tasks::vibrations::{Vibrating, vibrating};
 use crate::workflow::memory::{self, Occasion};
 use crate::workflow::remark::{Remarks, phase};
 use crate::workflow::warnings::{self, Outside};
@@ -46,6 +47,8 @@ pub struct EquilibriumResult {
     pub trajectory: Trajectory,
     /// Muscles and blocks outside the domain of their material.
     pub outside: Vec<Outside>,
+    /// Vibrations about it, where they were sought and found.
+    pub vibrations: Option<Vibrating>,
     /// Warnings and notes.
     pub remarks: Remarks,
     /// Seconds before the first iteration.
@@ -103,7 +106,18 @@ pub fn equilibrium(
         let undecided = || infeasible::undecided(stop::reason());
         remarks.warn("stability_unknown", is_unknown.then(undecided));
     }
+    let mut vibrations = None;
+    if let Some(request) = task.vibrations.as_ref().filter(|_| loss.is_none()) {
+        phase("vibrations");
+        match vibrating(system, task, request, &found)? {
+            Ok(list) => vibrations = Some(list),
+            Err(reason) => remarks.warn("no_vibrations", Some(reason)),
+        }
+        let notes = vibrations.iter().flat_map(|found| &found.notes).cloned();
+        remarks.note("vibrations", notes);
+    }
     Ok(EquilibriumResult {
+        vibrations,
         trajectory: Trajectory::from_discrete(&model, &discrete),
         model,
         found,

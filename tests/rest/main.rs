@@ -14,3 +14,4 @@ mod similar;
 mod stable;
 mod trunk;
 mod unstable_beside;
+mod vibrations;

@@ -138,6 +138,7 @@ fn at_rest_there_is_neither_inertia_nor_friction() {
                 voltages: volts.clone(),
                 coordinates: Some(coordinates),
                 path: None,
+                vibrations: None,
             };
             let of_motion = Analysis {
                 coordinates: Some(coordinates),

@@ -5,15 +5,15 @@ use std::collections::BTreeMap;
 
 /// Most lines, by fifties, and most files of each folder of `src`; the first is what lies above all folders.
 const SIZES: [(&str, usize, usize); 26] = [
-    (".", 1400, 7),
-    ("app", 8100, 33),
-    ("control", 9700, 36),
+    (".", 1450, 7),
+    ("app", 8350, 34),
+    ("control", 9800, 37),
     ("coordinates", 3190, 17),
-    ("dynamics", 11070, 36),
+    ("dynamics", 11650, 39),
     ("element", 3400, 15),
     ("energy", 4400, 21),
     ("feedback", 850, 4),
-    ("files", 17000, 81),
+    ("files", 17100, 81),
     ("functional", 5350, 20),
     ("identify", 2950, 9),
     ("interface", 2400, 12),
@@ -24,12 +24,12 @@ const SIZES: [(&str, usize, usize); 26] = [
     ("mesh", 1700, 12),
     ("model", 13310, 64),
     ("nlp", 2200, 7),
-    ("report", 6400, 33),
+    ("report", 6450, 33),
     ("sensitivity", 2450, 7),
     ("sparse", 7300, 34),
     ("study", 2200, 11),
     ("sweep", 650, 3),
-    ("tasks", 1450, 6),
+    ("tasks", 1700, 7),
     ("workflow", 11850, 38),
 ];
 /// The number of parameters of functions that are patterns of tuples, such as `(a, b): (A, B)`, which should have names or be structures.

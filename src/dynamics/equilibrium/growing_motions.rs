@@ -9,7 +9,8 @@ use crate::dynamics::newton_matrix::NewtonMatrix;
 use crate::math::{Random, Vector};
 use crate::model::Role;
 use crate::stop;
-use nalgebra::{Complex, DMatrix, DVector, Schur};
+use faer::Mat;
+use nalgebra::{Complex, DMatrix, DVector};
 
 /// Largest dimension of a Krylov space, and the dimensions after which its eigenvalues are compared.
 const LARGEST: usize = 120;
@@ -22,8 +23,6 @@ const FACTOR: f64 = 4.0;
 const SHIFTS: usize = 40;
 /// Parts of the largest θ below this are rounding.
 const ROUNDING: f64 = 1e-12;
-/// Iterations of the QR method.
-const ROTATIONS: usize = 10_000;
 
 impl Statics<'_> {
     /// Number of directions in which a disturbance of the state evaluated and factorised last grows, potentials following; `None`
@@ -127,14 +126,21 @@ impl Statics<'_> {
 }
 
 /// Eigenvalues of a matrix.
-pub(super) fn eigenvalues(matrix: DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
-    let schur = Schur::try_new(matrix, f64::EPSILON, ROTATIONS)?;
-    Some(schur.complex_eigenvalues().iter().copied().collect())
+pub(super) fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
+    let (rows, columns) = matrix.shape();
+    let matrix = Mat::from_fn(rows, columns, |i, j| matrix[(i, j)]);
+    let values = matrix.eigenvalues().ok()?;
+    Some(
+        values
+            .iter()
+            .map(|value| Complex::new(value.re, value.im))
+            .collect(),
+    )
 }
 
 /// Number of growing motions by eigenvalues θ, and the least real part of μ.
 fn least(matrix: DMatrix<f64>, tau: f64) -> Option<(usize, f64)> {
-    let found = eigenvalues(matrix)?;
+    let found = eigenvalues(&matrix)?;
     let size = |theta: &Complex<f64>| theta.re.hypot(theta.im);
     let largest = found.iter().map(size).fold(0.0, f64::max);
     let found = found

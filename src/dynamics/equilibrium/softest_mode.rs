@@ -72,7 +72,7 @@ fn stiffness(statics: &Statics<'_>) -> Vec<f64> {
     let mut values: Vec<f64> = match &statics.inertia.symmetric_part {
         None => SymmetricEigen::new(matrix).eigenvalues.as_slice().to_vec(),
         Some(_) => {
-            let values = eigenvalues(matrix).unwrap_or_default();
+            let values = eigenvalues(&matrix).unwrap_or_default();
             values.iter().map(|value| value.re).collect()
         }
     };
@@ -199,7 +199,7 @@ fn softening(
 }
 
 /// Names the parts that move along a direction.
-fn moves(model: &Model, z: &[f64], direction: &[f64]) -> String {
+pub(super) fn moves(model: &Model, z: &[f64], direction: &[f64]) -> String {
     let map = &model.action.map;
     let mut instant = map.placed(z);
     instant.l[..direction.len()].copy_from_slice(direction);

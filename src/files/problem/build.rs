@@ -1,6 +1,6 @@
 //! The problem file, and its conversion to a task, with one voltage per source and indices for names.
 
-use crate::control::problem::{AtRest, Task};
+use crate::control::problem::{AtRest, FrequencySweep, Task, VibrationRequest};
 use crate::files::json::objects::read_objects;
 use crate::files::json::scope::{Result, refuse, the_one};
 use crate::files::problem::at::{At, CoordinatesSpec, VoltageMap};
@@ -15,7 +15,7 @@ use crate::files::problem::simulation::{SimulateSpec, simulation};
 use crate::files::scene::constants::WrittenScene;
 use crate::files::scene::spec::SceneSpec;
 use crate::files::signal::SignalSpec;
-use crate::files::units::quantity::{LoadSize, Quantity};
+use crate::files::units::quantity::{Frequency, LoadSize, Quantity};
 use crate::model::{NO_BRANCHES, Response};
 use std::collections::BTreeMap;
 
@@ -65,7 +65,60 @@ fn equilibrium(spec: &EquilibriumSpec, at: &At<'_>) -> Result<Task> {
         coordinates,
         response,
         path: spec.path,
+        vibrations: vibrations(spec, at)?,
     }))
+}
+
+/// Most vibrations, and most frequencies of a response.
+const MOST_VIBRATIONS: usize = 100;
+const MOST_FREQUENCIES: usize = 10_000;
+
+/// Vibrations about a state of rest.
+fn vibrations(spec: &EquilibriumSpec, at: &At<'_>) -> Result<Option<VibrationRequest>> {
+    let sweep = at.optional("frequency_response", &spec.frequency_response, sweep)?;
+    if spec.modes.is_none() && sweep.is_none() {
+        return Ok(None);
+    }
+    let place = at.key(if spec.modes.is_some() {
+        "modes"
+    } else {
+        "frequency_response"
+    });
+    let other = match spec.path {
+        Some(_) => Some("\"path\""),
+        None if spec.response == Some(ResponseSpec::Instantaneous) => {
+            Some("an \"instantaneous\" response")
+        }
+        None => None,
+    };
+    refuse!(if let Some(other) = other, place;
+        found format!("it beside {other}"), expected "vibrations about one state of rest");
+    if let Some(count) = spec.modes {
+        place.count(count, "vibration", MOST_VIBRATIONS)?;
+    }
+    Ok(Some(VibrationRequest {
+        count: spec.modes.unwrap_or(1),
+        sweep,
+    }))
+}
+
+/// An input that oscillates.
+fn sweep(at: &At<'_>, spec: &FrequencyResponseSpec) -> Result<FrequencySweep> {
+    let place = at.key("input");
+    let source = place.source(&spec.input, "a muscle, a driven electrode or a load")?;
+    let range = [&spec.from, &spec.to].map(Quantity::value);
+    refuse!(if range[0] <= 0.0, at.key("from");
+        found &spec.from, expected "a positive frequency");
+    refuse!(if range[1] <= range[0], at.key("to");
+        found &spec.to, expected format!("a frequency above \"from\", {}", spec.from));
+    let points = spec.points.unwrap_or(200);
+    at.key("points").count(points, "point", MOST_FREQUENCIES)?;
+    refuse!(if points < 2, at.key("points"); found points, expected "two or more");
+    Ok(FrequencySweep {
+        source,
+        range,
+        points,
+    })
 }
 
 read_objects! {
@@ -103,6 +156,22 @@ read_objects! {
         pub response: Option<ResponseSpec>,
         /// Number of points of the path of equilibria from zero voltage that are followed by arc length, past limit points such as pull-in.
         pub path: Option<usize>,
+        /// Number of vibrations about the state, those of lowest frequencies: natural frequencies, damping ratios and shapes.
+        pub modes: Option<usize>,
+        /// Response of joints and markers to an input that oscillates about its value at rest.
+        pub frequency_response: Option<FrequencyResponseSpec>,
+    }
+
+    /// An input that oscillates, and its frequencies, whose logarithms are evenly spaced.
+    pub struct FrequencyResponseSpec {
+        /// Name of the muscle, the driven electrode or the load.
+        pub input: String,
+        /// Lowest frequency, SI unit Hz.
+        pub from: Quantity<Frequency>,
+        /// Highest frequency, SI unit Hz.
+        pub to: Quantity<Frequency>,
+        /// Number of frequencies; 200 where not written.
+        pub points: Option<usize>,
     }
 
     /// Response of Maxwell branches to voltages and loads.

@@ -139,6 +139,8 @@ measures! {
     AngularVelocity: ["rad/s"], "an angular velocity", "\"2 rad/s\"";
     /// Rate of a stretch: 1/s, 1/ms inside.
     Rate: ["1/s"], "a rate", "\"25 1/s\"";
+    /// Frequency: Hz, kHz inside.
+    Frequency: ["Hz"], "a frequency", "\"20 Hz\"";
     /// Moment of inertia: kg m², g mm² inside.
     MomentOfInertia: ["kg m^2"], "a moment of inertia", "\"9.25e-6 kg m^2\"";
     /// Damping of a rotation: N m s/rad, N mm ms inside.

@@ -145,8 +145,9 @@ const PREFIXES: [(&str, i32); 14] = [
 ];
 
 /// Units that have a name of their own: exponents of their dimension, factor and power of ten.
-const NAMED: [(&str, [i32; BASE.len()], f64, i32); 20] = [
+const NAMED: [(&str, [i32; BASE.len()], f64, i32); 21] = [
     ("m", [1, 0, 0, 0, 0, 0], 1.0, 0),
+    ("Hz", [0, 0, -1, 0, 0, 0], 1.0, 0),
     ("g", [0, 1, 0, 0, 0, 0], 1.0, -3),
     ("t", [0, 1, 0, 0, 0, 0], 1.0, 3),
     ("s", [0, 0, 1, 0, 0, 0], 1.0, 0),
