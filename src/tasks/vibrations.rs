@@ -65,24 +65,28 @@ pub(super) fn vibrating(
     let analysis = task.analysis_of_vibrations(system, quantities);
     let model = Model::for_analysis(system.clone(), analysis);
     let model = model.map_err(|error| WorkflowError::boundary("equilibrium", &error.into()))?;
-    let scalars = model.scalars(&task.voltages);
-    let rest = stable_equilibrium(&model, &model.reference_coordinates(), &scalars);
     let none = |reason: &str| Ok(Err(reason.to_owned()));
-    let Ok(rest) = rest else {
-        return none("vibrations are not told: the state of rest of motions was not found");
-    };
-    let apart = |(a, b): (&f64, &f64)| (a - b).abs() > SAME * model.length().max(1.0);
-    let places = model.coordinate_count().min(still.z.len());
-    if rest.z[..places.min(model.action.map.of_bodies)]
-        .iter()
-        .zip(&still.z)
-        .any(apart)
-    {
-        return none(
-            "vibrations are not told: motions have another state of rest than the one that was found",
-        );
+    // Where nothing remembers, the state is one of motions too; otherwise it is found once more, with what they remember.
+    let mut rest = still.clone();
+    let mut about = Vibrations::about(&model, &rest);
+    if about.is_none() {
+        let scalars = model.scalars(&task.voltages);
+        match stable_equilibrium(&model, &model.reference_coordinates(), &scalars) {
+            Ok(found) => rest = found,
+            Err(_) => {
+                return none("vibrations are not told: the state of rest of motions was not found");
+            }
+        }
+        let apart = |(a, b): (&f64, &f64)| (a - b).abs() > SAME * model.length().max(1.0);
+        let places = model.action.map.of_bodies.min(still.z.len());
+        if rest.z[..places].iter().zip(&still.z).any(apart) {
+            return none(
+                "vibrations are not told: motions have another state of rest than the one that was found",
+            );
+        }
+        about = Vibrations::about(&model, &rest);
     }
-    let Some(mut vibrations) = Vibrations::about(&model, &rest) else {
+    let Some(mut vibrations) = about else {
         return none("there are no vibrations about this state: its stiffness is singular");
     };
     let Some(modes) = vibrations.modes(request.count) else {

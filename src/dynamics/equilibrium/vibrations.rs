@@ -36,6 +36,8 @@ const VIBRATES: f64 = 1e-3;
 const ROUGH: f64 = 1e-4;
 const EXACT: f64 = 1e-8;
 
+/// Newton's update at a state of rest, in rad and lengths of the system.
+const AT_REST: f64 = 1e-7;
 /// Parts of a sum below which it is rounding.
 const LOST: f64 = 1e-13;
 
@@ -78,13 +80,25 @@ pub struct Modes {
 }
 
 impl<'m> Vibrations<'m> {
-    /// Linearises a model about a state of rest; `None` where the stiffness is singular.
+    /// Linearises a model about a state of rest; `None` where the stiffness is singular, or the state is not at rest or one of another model.
     pub fn about(model: &'m Model, rest: &Equilibrium) -> Option<Self> {
+        let map = &model.action.map;
+        let sizes = [map.instant().z.len(), model.action.intervals.scalars];
+        if [rest.z.len(), rest.scalars.len()] != sizes {
+            return None;
+        }
         let [inputs, others] = model.variables.split(&rest.scalars);
         let mut statics = Statics::new(model, inputs);
         let state = statics.state(&rest.z, others);
         statics.evaluate(&state, inputs);
         statics.factor().ok()?;
+        let mut update = statics.residual.clone();
+        statics.solve(&mut update);
+        if statics.size(&update[..statics.scales().len()]) > AT_REST
+            || update.iter().any(|part| part.is_nan())
+        {
+            return None;
+        }
         let [damping, mass] = rates(model, &statics.configuration(&state), &rest.scalars);
         let sizes = statics.scales().iter();
         let scales = sizes.map(|size| if size.is_finite() { *size } else { 1.0 });
