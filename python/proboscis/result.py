@@ -150,7 +150,7 @@ class Result:
 
     @cached_property
     def frequency_response(self) -> Table:
-        """Amplitude and phase of each joint and marker, for a unit of the input (kV, N, N mm), one row per frequency."""
+        """Amplitude and phase of each joint and marker, for a unit of the input (V, N, N m), one row per frequency."""
         return self._table("frequency_response.csv")
 
     @property

@@ -65,3 +65,14 @@ def test_gains_are_those_of_the_riccati_recursion() -> None:
     sizes = np.sqrt(np.diag(r))
     held = linalg.solve_discrete_are(a, b / sizes, q, r / np.outer(sizes, sizes))
     np.testing.assert_allclose(of["S_held"], held, atol=1e-6 * np.abs(held).max())
+
+
+def test_vibrations_about_an_equilibrium() -> None:
+    found = pb.Problem.from_file(PROBLEMS / "trunk_modes.json").equilibrium()
+    frequencies = [mode["frequency"] for mode in found.modes]
+    assert len(frequencies) == 6 and frequencies == sorted(frequencies)
+    response = found.frequency_response
+    amplitude = response["tip_x_amplitude"]
+    assert response["frequency"][np.argmax(amplitude)] == pytest.approx(frequencies[0], rel=1e-2)
+    with pytest.raises(pb.Error, match="only the result"):
+        print(changed("pull_in", {"equilibrium.path": 3}).equilibrium().modes)

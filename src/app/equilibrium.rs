@@ -120,7 +120,9 @@ pub(super) fn at(
         discrete,
         ..
     } = &result;
-    let observed = at_rest(observations(model, discrete));
+    let mut observed = at_rest(observations(model, discrete));
+    let modes = result.vibrations.iter().flat_map(vibrations::columns);
+    observed.columns.extend(modes);
     let rest = Rest::new(&result, &observed);
     let folder = make_folder_of(request)?;
     let writing = Instant::now();

@@ -2,7 +2,7 @@
 
 use crate::app::request::PageWanted;
 use crate::dynamics::observations;
-use crate::dynamics::trajectory::Trajectory;
+use crate::dynamics::trajectory::{Column, Trajectory};
 use crate::files::Entries;
 use crate::math::significant;
 use crate::model::system::InputKind;
@@ -44,6 +44,24 @@ fn table_of_modes(found: &Vibrating) -> Vec<Vec<String>> {
         .into_iter()
         .chain(rows)
         .collect()
+}
+
+/// Columns of the table of the state: frequency and damping ratio of each, which a sweep has over what it varies.
+pub(super) fn columns(found: &Vibrating) -> Vec<Column> {
+    let modes = found.modes.vibrations.iter().enumerate();
+    let columns = modes.flat_map(|(k, mode)| {
+        let number = k + 1;
+        let column = |name: &str, unit, value| Column {
+            name: format!("mode{number}_{name}"),
+            unit,
+            values: vec![value],
+        };
+        [
+            column("frequency", "Hz", 1e3 * mode.frequency),
+            column("damping_ratio", "", mode.damping),
+        ]
+    });
+    columns.collect()
 }
 
 /// Lines about the vibrations: `1   12.34 Hz   damping 3.2 %   joint1`.
@@ -94,7 +112,7 @@ pub(super) fn entries(found: &Vibrating) -> Entries {
 
 /// Amplitude and phase of a response in SI units for V, N or N m.
 fn amplitude(response: &FrequencyResponse, kind: InputKind, output: usize) -> Vec<f64> {
-    let (_, size) = kind.counted();
+    let (_, size) = kind.si();
     let length = match response.outputs[output].1 {
         "mm" => 1e-3,
         _ => 1.0,
@@ -129,7 +147,7 @@ fn plots(
     response: &FrequencyResponse,
 ) -> Vec<(&'static str, &'static str, LinePlot)> {
     let kind = found.model.input_kind(response.source);
-    let (unit, _) = kind.counted();
+    let (unit, _) = kind.si();
     let largest = |output: usize| {
         amplitude(response, kind, output)
             .into_iter()
@@ -182,7 +200,7 @@ fn plots(
 /// Rows of `frequency_response.csv`.
 fn table_of_response(found: &Vibrating, response: &FrequencyResponse) -> Vec<Vec<String>> {
     let kind = found.model.input_kind(response.source);
-    let (unit, _) = kind.counted();
+    let (unit, _) = kind.si();
     let outputs = 0..response.outputs.len();
     let mut header = vec!["frequency [Hz]".to_owned()];
     for (name, inside) in &response.outputs {

@@ -125,7 +125,7 @@ fn a_motion_goes_on_from_an_end_in_motion() {
     let names: Vec<&str> = lines.next().unwrap().split(',').collect();
     let column = names.iter().position(|name| *name == "rail [mm]").unwrap();
     let last: f64 = lines
-        .last()
+        .next_back()
         .unwrap()
         .split(',')
         .nth(column)

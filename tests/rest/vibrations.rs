@@ -257,9 +257,9 @@ fn the_frequency_vanishes_towards_pull_in() {
     for _ in 0..14 {
         let middle = 0.5 * (low + high);
         if lowest(middle).is_nan() {
-            high = middle
+            high = middle;
         } else {
-            low = middle
+            low = middle;
         }
     }
     let [free, near] = [0.0, low].map(lowest);

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// Most lines, by fifties, and most files of each folder of `src`; the first is what lies above all folders.
 const SIZES: [(&str, usize, usize); 26] = [
     (".", 1450, 7),
-    ("app", 8350, 34),
+    ("app", 8400, 34),
     ("control", 9800, 37),
     ("coordinates", 3190, 17),
     ("dynamics", 11650, 39),
