@@ -22,7 +22,7 @@ pub struct Scales {
 type Exponents = [i32; 4];
 
 /// Units of the measures of the schema, by their names there.
-const MEASURES: [(&str, &str); 33] = [
+const MEASURES: [(&str, &str); 34] = [
     ("Acceleration", "m/s^2"),
     ("Angle", "rad"),
     ("AngularVelocity", "rad/s"),
@@ -31,6 +31,7 @@ const MEASURES: [(&str, &str); 33] = [
     ("Density", "kg/m^3"),
     ("ElectricField", "V/m"),
     ("Force", "N"),
+    ("Frequency", "1/s"),
     ("JointCoordinate", "rad"),
     ("JointDamping", "N m s/rad"),
     ("JointRate", "rad/s"),
