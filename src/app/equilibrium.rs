@@ -120,9 +120,7 @@ pub(super) fn at(
         discrete,
         ..
     } = &result;
-    let mut observed = at_rest(observations(model, discrete));
-    let modes = result.vibrations.iter().flat_map(vibrations::columns);
-    observed.columns.extend(modes);
+    let observed = observed(&result);
     let rest = Rest::new(&result, &observed);
     let folder = make_folder_of(request)?;
     let writing = Instant::now();
@@ -173,6 +171,14 @@ pub(super) fn at(
     summary.seconds.wrote(began, writing);
     summary.write(files)?;
     Ok(output)
+}
+
+/// Columns of the table: the state, and its vibrations.
+fn observed(result: &EquilibriumResult) -> Observations {
+    let mut observed = at_rest(observations(&result.model, &result.discrete));
+    let modes = result.vibrations.iter().flat_map(vibrations::columns);
+    observed.columns.extend(modes);
+    observed
 }
 
 /// Title of the page.
