@@ -9,7 +9,7 @@ use crate::app::progress::Progress;
 use crate::app::request::{CommandInput, CommandOutput, counted};
 use crate::app::summary::{MEASURED, Seconds, Summary, no_equilibrium, plan, refused};
 use crate::app::{blocks, fields, vibrations};
-use crate::control::problem::{AtRest, Task, VibrationRequest};
+use crate::control::problem::{AtRest, Task};
 use crate::dynamics::trajectory::{Column, Observations, Trajectory};
 use crate::dynamics::{
     DiscreteTrajectory, Equilibrium, Instability, PathStop, StabilityLoss, UNSTABLE, continuation,
@@ -69,20 +69,14 @@ pub fn equilibrium_of_file(
             coordinates: None,
             response,
             path: None,
-            vibrations: modes.map(|count| VibrationRequest { count, sweep: None }),
+            vibrations: None,
         };
-        return at(request, None, &system, &task, began);
+        return at(request, None, &system, &task.with_modes(modes), began);
     }
     let loaded = read_problem(&request.input, &request.set)?;
     match (&loaded.task, modes) {
-        (Task::Equilibrium(task), None) => at(request, Some(&loaded), &loaded.system, task, began),
-        (Task::Equilibrium(task), Some(count)) => {
-            let sweep = task.vibrations.as_ref().and_then(|one| one.sweep.clone());
-            let task = AtRest {
-                vibrations: Some(VibrationRequest { count, sweep }),
-                path: None,
-                ..task.clone()
-            };
+        (Task::Equilibrium(task), _) => {
+            let task = task.with_modes(modes);
             at(request, Some(&loaded), &loaded.system, &task, began)
         }
         (_, Some(_)) => equilibrium_of_file(request, Some(&[]), modes),
@@ -148,7 +142,7 @@ pub(super) fn at(
         name: "rest",
         held: Some(&result.trajectory.voltages[0]),
         figures: request.figures,
-        page: request.page.of(&page),
+        page: request.page.of(&page).filter(|_| !result.has_shapes()),
         ..Run::from_trajectory(
             &model.system,
             &result.trajectory,
@@ -159,14 +153,7 @@ pub(super) fn at(
     };
     write_still(&mut files, "equilibrium.csv", &run)?;
     if let Some(found) = &result.vibrations {
-        vibrations::write(
-            found,
-            &mut files,
-            page,
-            request.figures,
-            request.page,
-            &origin,
-        )?;
+        vibrations::write(found, &mut files, page, request, &origin)?;
     }
     summary.seconds.wrote(began, writing);
     summary.write(files)?;

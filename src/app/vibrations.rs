@@ -1,6 +1,6 @@
 //! Vibrations about a state of rest as tables, figures, rows of the page and entries of `summary.json`.
 
-use crate::app::request::PageWanted;
+use crate::app::request::CommandInput;
 use crate::dynamics::observations;
 use crate::dynamics::trajectory::{Column, Trajectory};
 use crate::files::Entries;
@@ -12,7 +12,7 @@ use crate::report::file_set::FileSet;
 use crate::report::lines::{LinePlot, Series};
 use crate::report::origin::Origin;
 use crate::report::skins::Skins;
-use crate::report::{Figures, PageContent, Run, style, table, write_page};
+use crate::report::{PageContent, Run, style, table, write_page};
 use crate::tasks::{FrequencyResponse, Vibrating};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
@@ -34,7 +34,7 @@ fn table_of_modes(found: &Vibrating) -> Vec<Vec<String>> {
     let modes = found.modes.vibrations.iter().enumerate();
     let rows = modes.map(|(k, mode)| {
         let (frequency, damping) = (1e3 * mode.frequency, mode.damping);
-        let damped = frequency * (1.0 - damping * damping).max(0.0).sqrt();
+        let damped = 1e3 * mode.damped_frequency();
         let decay = 1.0 / (TAU * frequency * damping);
         let numbers = [frequency, damping, damped, decay].map(|value| format!("{value:?}"));
         let words = [(k + 1).to_string()].into_iter().chain(numbers);
@@ -232,8 +232,7 @@ pub(super) fn write(
     found: &Vibrating,
     files: &mut FileSet,
     mut page: PageContent,
-    figures: Figures,
-    wanted: PageWanted,
+    request: &CommandInput,
     origin: &Origin,
 ) -> Result<(), WriteError> {
     let modes = table::cells_csv(&table_of_modes(found), origin);
@@ -254,8 +253,8 @@ pub(super) fn write(
     let (skins, observed) = (Skins::new(model, shapes), observations(model, shapes));
     let run = Run {
         name: "modes",
-        figures,
-        page: wanted.of(&page),
+        figures: request.figures,
+        page: request.page.of(&page),
         ..Run::from_trajectory(&model.system, &motion, &skins, &observed, origin)
     };
     write_page(files, &run)

@@ -51,6 +51,18 @@ impl FrequencySweep {
 }
 
 impl AtRest {
+    /// The same with this number of vibrations about the state, where one is given.
+    #[must_use]
+    pub fn with_modes(&self, count: Option<usize>) -> Self {
+        let mut task = self.clone();
+        if let Some(count) = count {
+            let sweep = task.vibrations.and_then(|one| one.sweep);
+            task.vibrations = Some(VibrationRequest { count, sweep });
+            task.path = None;
+        }
+        task
+    }
+
     /// The analysis of a state of rest. Its stability is computed too, that of unloaded parts included: nothing is taken to
     /// be still.
     pub fn analysis(&self, system: &System) -> Analysis {

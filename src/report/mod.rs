@@ -51,7 +51,7 @@ pub fn write_run(files: &mut FileSet, run: &Run<'_>) -> Result<(), WriteError> {
     write(files, run, page, texts)
 }
 
-/// Writes the page of a run alone, in place of one that was written.
+/// Writes the page of a run alone.
 ///
 /// # Errors
 /// The file cannot be written.

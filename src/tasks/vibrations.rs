@@ -158,7 +158,7 @@ fn peaked(sweep: &FrequencySweep, modes: &Modes) -> Vec<f64> {
         .vibrations
         .iter()
         .filter(|one| one.damping.abs() > UNDAMPED);
-    let damped = damped.map(|one| one.frequency * (1.0 - one.damping * one.damping).sqrt());
+    let damped = damped.map(Vibration::damped_frequency);
     frequencies.extend(damped.filter(|one| (low..high).contains(one)));
     frequencies.sort_by(f64::total_cmp);
     frequencies

@@ -68,6 +68,13 @@ pub struct Vibration {
     pub moves: String,
 }
 
+impl Vibration {
+    /// Frequency |Im λ|/2π in kHz at which it swings.
+    pub fn damped_frequency(&self) -> f64 {
+        self.frequency * (1.0 - self.damping * self.damping).max(0.0).sqrt()
+    }
+}
+
 /// The slowest motions about a state of rest.
 #[derive(Clone, Debug)]
 pub struct Modes {
