@@ -137,12 +137,14 @@ pub(super) fn at(
     let title = title(*loss, status);
     let mut page = summary.page(title, loaded);
     page.rows = rest.rows();
+    let vibrating = result.vibrations.as_ref();
+    let played = vibrating.is_some_and(|found| !found.modes.vibrations.is_empty());
     let skins = Skins::new(model, discrete);
     let run = Run {
         name: "rest",
         held: Some(&result.trajectory.voltages[0]),
         figures: request.figures,
-        page: request.page.of(&page).filter(|_| !result.has_shapes()),
+        page: request.page.of(&page).filter(|_| !played),
         ..Run::from_trajectory(
             &model.system,
             &result.trajectory,
@@ -152,7 +154,7 @@ pub(super) fn at(
         )
     };
     write_still(&mut files, "equilibrium.csv", &run)?;
-    if let Some(found) = &result.vibrations {
+    if let Some(found) = vibrating {
         vibrations::write(found, &mut files, page, request, &origin)?;
     }
     summary.seconds.wrote(began, writing);

@@ -55,14 +55,6 @@ pub struct EquilibriumResult {
     pub setup: f64,
 }
 
-impl EquilibriumResult {
-    /// Returns true if there are shapes of vibrations, which a page shows in place of the state.
-    pub(crate) fn has_shapes(&self) -> bool {
-        let found = self.vibrations.as_ref();
-        found.is_some_and(|found| !found.modes.vibrations.is_empty())
-    }
-}
-
 /// The model of an equilibrium.
 ///
 /// # Errors
