@@ -187,7 +187,9 @@ fn without_grid(model: &Model) -> NodeMesh {
     let elements = mesh.hexahedra.iter();
     NodeMesh {
         places: mesh.nodes.iter().map(|&node| node.into()).collect(),
-        elements: elements.map(|of| of.map(|node| node as u32)).collect(),
+        elements: elements
+            .map(|of| of.map(|node| node as u32).to_vec())
+            .collect(),
         unknowns: model.node_grids().unwrap().boxes[0].unknowns.clone(),
         shortest_edge: mesh.shortest_edge(),
         has_pressures: false,

@@ -6,7 +6,7 @@
 
 use crate::coordinates::Configuration;
 use crate::dynamics::DiscreteTrajectory;
-use crate::element::{Fields, Viscosity};
+use crate::element::Fields;
 use crate::math::{Matrix, Vector};
 use crate::model::{Model, SolidBlock};
 use crate::report::atomic::WriteError;
@@ -125,17 +125,16 @@ fn grid<'m>(model: &'m Model, number: usize, state: &SolidState) -> Unstructured
         if let Some(stress) = model.branch_stress(number, e, &state.here) {
             fields.stress += stress;
         }
-        if let (Some(velocities), Some(viscosity)) = (&velocities, block.material(e).viscosity) {
-            let nodes = mesh.hexahedra[e];
-            let (x, v) = (nodes.map(|n| places[n]), nodes.map(|n| velocities[n]));
-            fields.stress += Viscosity { viscosity }.stress(&block.shapes[e], &x, &v);
+        let of_velocities = |velocities| block.viscous_stress(e, &places, velocities);
+        if let Some(stress) = velocities.as_deref().and_then(of_velocities) {
+            fields.stress += stress;
         }
         fields
     };
     let fields: Vec<Fields> = (0..block.shapes.len()).map(fields).collect();
     UnstructuredGrid {
         points: places.iter().map(|x| x * 1e-3).collect(),
-        hexahedra: &mesh.hexahedra,
+        cells: mesh.elements().collect(),
         point_data,
         cell_data: cells(number, block, &fields)
             .into_iter()

@@ -18,7 +18,7 @@
 use crate::coordinates::Configuration;
 use crate::dynamics::trajectory::DiscreteTrajectory;
 use crate::functional::{Sample, TermKind};
-use crate::math::{Matrix, Vector, largest_eigenvalue_bound};
+use crate::math::{Vector, largest_eigenvalue_bound};
 use crate::model::system::{ElasticLaw, ElectricConstants, Fidelity, Material, Muscle};
 use crate::model::{Model, SolidBlock};
 use nalgebra::SymmetricEigen;
@@ -95,10 +95,8 @@ fn block_at_limit(block: &SolidBlock, x: &[Vector], part: f64) -> Option<String>
         return None;
     }
     let strain = |element: usize, limit: f64| {
-        let nodes = block.nodes(element).map(|v| x[v]);
-        let shape = &block.shapes[element];
-        let points = (0..shape.weights().len()).map(|g| {
-            let gradient = shape.gradient_of(&nodes, g);
+        let points = (0..block.shapes[element].weights().len()).map(|g| {
+            let gradient = block.deformation(element, g, x);
             gradient.norm_squared() * gradient.determinant().powf(-2.0 / 3.0) - 3.0
         });
         (points.fold(f64::NEG_INFINITY, f64::max), limit)
@@ -303,7 +301,7 @@ impl<'m> Watched<'m> {
 fn worst_of_block(block: &SolidBlock, x: &[Vector], scalars: &[f64]) -> Option<(f64, f64)> {
     let potentials = block.potentials(scalars);
     let mut worst: Option<(f64, f64)> = None;
-    for (e, nodes) in block.solid.mesh.hexahedra.iter().enumerate() {
+    for (e, nodes) in block.solid.mesh.elements().enumerate() {
         let Some(electric) = block.material(e).electric else {
             continue;
         };
@@ -311,9 +309,8 @@ fn worst_of_block(block: &SolidBlock, x: &[Vector], scalars: &[f64]) -> Option<(
         if !block.is_dielectric[e] || !has_field {
             continue;
         }
-        let at = nodes.map(|n| x[block.vectors[n]]);
         for g in 0..8 {
-            let F: Matrix = block.shapes[e].gradient_of(&at, g);
+            let F = block.deformation(e, g, x);
             let Some(limit) = largest_stretch(&electric, F.determinant()) else {
                 continue;
             };

@@ -1,4 +1,4 @@
-//! Fields of a hexahedron for display: means over its reference volume of deformation, fields and stress.
+//! Fields of an element for display: means over its reference volume of deformation, fields and stress.
 //!
 //! The true electric field at a point of an element, squared and relative to a limit, with its derivatives.
 //!
@@ -23,7 +23,7 @@ use crate::element::law::{Field, Volume};
 use crate::element::viscosity::Viscosity;
 use crate::math::{Matrix, Vector};
 
-/// Means over the reference volume of a hexahedron, by its Gauss points.
+/// Means over the reference volume of an element, by its Gauss points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fields {
     /// F.
@@ -50,7 +50,7 @@ impl Fields {
 
 #[expect(non_snake_case, reason = "notation of the law")]
 impl<F: Field, L: ElementLaw> Elastomer<F, L> {
-    /// Fields of the hexahedron `shape` with nodes at `x` in mm and their potentials in V; add
+    /// Fields of the element `shape` with nodes at `x` in mm and their potentials in V; add
     /// [`Viscosity::stress`] to the stress of a moving one.
     pub fn fields<const NODES: usize>(
         &self,

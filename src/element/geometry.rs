@@ -1,52 +1,23 @@
-//! The trilinear hexahedron in its reference configuration: gradients of the shape functions and weights.
+//! An element in its reference configuration: gradients of the shape functions, weights and masses.
 
 use crate::element::number::{Nine, Points, Three, cofactor, dot, scale_all};
 use crate::math::{Matrix, Vector};
-use crate::mesh::CORNERS;
+use crate::mesh::interpolation::{Element, Interpolation, Parent};
 use thiserror::Error;
 
-/// 1/√3, the place of the Gauss points; their weights are 1.
-const POINT: f64 = 0.577_350_269_189_625_8;
-
-/// N_i = ⅛ (1 ± ξ)(1 ± η)(1 ± ζ) at the Gauss points, `VALUES[i][g]`.
-const VALUES: [[f64; 8]; 8] = {
-    let mut values = [[0.0; 8]; 8];
-    let mut i = 0;
-    while i < 8 {
-        let mut g = 0;
-        while g < 8 {
-            values[i][g] = 0.125 * factor(i, g, 0) * factor(i, g, 1) * factor(i, g, 2);
-            g += 1;
-        }
-        i += 1;
-    }
-    values
-};
-
-/// 1 + ξ_i ξ_g in direction `m`.
-const fn factor(i: usize, g: usize, m: usize) -> f64 {
-    1.0 + CORNERS[i][m] * CORNERS[g][m] * POINT
-}
-
-/// ∂N_i/∂ξ_m at the Gauss point `g`.
-const fn slope(i: usize, g: usize, m: usize) -> f64 {
-    0.125 * CORNERS[i][m] * factor(i, g, (m + 1) % 3) * factor(i, g, (m + 2) % 3)
-}
-
-/// A hexahedron that is inverted at a Gauss point.
+/// An element that is inverted at a Gauss point.
 #[derive(Clone, Copy, Debug, Error, PartialEq)]
-#[error("a hexahedron has the Jacobian determinant {determinant} at its Gauss point {point}")]
+#[error("an element has the Jacobian determinant {determinant} at its Gauss point {point}")]
 pub struct Inverted {
-    /// Number of the Gauss point; it lies towards the node of the same number.
+    /// Number of the Gauss point; in a hexahedron it lies towards the node of the same number.
     pub point: usize,
     /// det ∂X/∂ξ there in mm³.
     pub determinant: f64,
 }
 
-/// Gradients G_i = ∂N_i/∂X and weights w at the eight Gauss points of an element; of a hexahedron with 2 × 2 × 2 points
-/// w = det ∂X/∂ξ.
+/// Gradients G_i = ∂N_i/∂X at the eight Gauss points of an element, and det ∂X/∂ξ times the weights of the points.
 ///
-/// Nodes of a hexahedron in the order of VTK: the lower face counter-clockwise seen from above, then the upper face above it.
+/// Nodes are in the order of VTK, as those of a [`Mesh`](crate::mesh::Mesh).
 #[derive(Clone, Debug, PartialEq)]
 pub struct ElementGeometry<const NODES: usize = 8> {
     /// `gradients[i][m][g]`: component `m` of G_i at point `g`, in 1/mm.
@@ -55,26 +26,33 @@ pub struct ElementGeometry<const NODES: usize = 8> {
     weights: [f64; 8],
 }
 
-impl ElementGeometry<8> {
-    /// The hexahedron with these nodes, in mm.
+/// ∂X/∂ξ with nodes at X, and its determinant.
+fn jacobian<const NODES: usize>(
+    nodes: &[Vector; NODES],
+    slopes: &[Vector; NODES],
+) -> (Matrix, f64) {
+    let both = nodes.iter().zip(slopes);
+    let jacobian: Matrix = both.map(|(x, s)| x * s.transpose()).sum();
+    (jacobian, jacobian.determinant())
+}
+
+impl<const NODES: usize> ElementGeometry<NODES>
+where
+    Parent<NODES>: Element<NODES>,
+{
+    /// The element with these nodes, in mm.
     ///
     /// # Errors
     ///
     /// [`Inverted`] where det ∂X/∂ξ is not positive at a Gauss point.
-    pub fn new(nodes: &[Vector; 8]) -> Result<Self, Inverted> {
+    pub fn new(nodes: &[Vector; NODES]) -> Result<Self, Inverted> {
         let mut shape = Self {
-            gradients: [[[0.0; 8]; 3]; 8],
+            gradients: [[[0.0; 8]; 3]; NODES],
             weights: [0.0; 8],
         };
-        for g in 0..8 {
-            let slopes: [Vector; 8] =
-                std::array::from_fn(|i| Vector::from_fn(|m, _| slope(i, g, m)));
-            let jacobian: Matrix = nodes
-                .iter()
-                .zip(&slopes)
-                .map(|(x, s)| x * s.transpose())
-                .sum();
-            let determinant = jacobian.determinant();
+        for (g, (at, weight)) in Parent::<NODES>::POINTS.iter().enumerate() {
+            let slopes = Parent::<NODES>::slopes(at).map(Vector::from);
+            let (jacobian, determinant) = jacobian(nodes, &slopes);
             let inverse = jacobian.try_inverse().filter(|_| determinant > 0.0);
             let Some(inverse) = inverse else {
                 return Err(Inverted {
@@ -82,7 +60,7 @@ impl ElementGeometry<8> {
                     determinant,
                 });
             };
-            shape.weights[g] = determinant;
+            shape.weights[g] = determinant * weight;
             for (gradient, slope) in shape.gradients.iter_mut().zip(&slopes) {
                 let value = inverse.tr_mul(slope);
                 for m in 0..3 {
@@ -93,27 +71,42 @@ impl ElementGeometry<8> {
         Ok(shape)
     }
 
-    /// Consistent mass ∫ ρ N_i N_j dV in g by the same Gauss points, exact for parallelepipeds; ρ in g/mm³.
-    pub fn mass(&self, density: f64) -> [[f64; 8]; 8] {
-        let product = |i: usize, j: usize, g: usize| VALUES[i][g] * VALUES[j][g] * self.weights[g];
+    /// Shape functions and weights in mm³ at the points by which masses and loads are integrated.
+    fn integrated(nodes: &[Vector; NODES]) -> Vec<([f64; NODES], f64)> {
+        let point = |(at, weight): ([f64; 3], f64)| {
+            let slopes = Parent::<NODES>::slopes(&at).map(Vector::from);
+            let (_, determinant) = jacobian(nodes, &slopes);
+            (Parent::<NODES>::values(&at), determinant * weight)
+        };
+        Parent::<NODES>::quadrature()
+            .into_iter()
+            .map(point)
+            .collect()
+    }
+
+    /// Consistent mass ∫ ρ N_i N_j dV in g of the element with these nodes; ρ in g/mm³. That of a hexahedron is exact for parallelepipeds.
+    pub fn mass(nodes: &[Vector; NODES], density: f64) -> [[f64; NODES]; NODES] {
+        let points = Self::integrated(nodes);
         std::array::from_fn(|i| {
-            std::array::from_fn(|j| density * (0..8).map(|g| product(i, j, g)).sum::<f64>())
+            std::array::from_fn(|j| {
+                let product = |(n, w): &([f64; NODES], f64)| n[i] * n[j] * w;
+                density * points.iter().map(product).sum::<f64>()
+            })
         })
     }
 
-    /// ∫ N_i dV in mm³: the share of each node in a body force.
-    pub fn loads(&self) -> [f64; 8] {
-        VALUES.map(|value| value.iter().zip(&self.weights).map(|(n, w)| n * w).sum())
+    /// ∫ N_i dV in mm³ of the element with these nodes: the share of each node in a body force.
+    pub fn loads(nodes: &[Vector; NODES]) -> [f64; NODES] {
+        let points = Self::integrated(nodes);
+        std::array::from_fn(|i| points.iter().map(|(n, w)| n[i] * w).sum())
     }
 
-    /// Gradients of all N_i at the centre of a hexahedron with these nodes; `None` where it is inverted there.
-    pub fn central_gradients(nodes: &[Vector; 8]) -> Option<[Vector; 8]> {
-        let slopes = CORNERS.map(|corner| Vector::from(corner) * 0.125);
-        let both = nodes.iter().zip(&slopes);
-        let jacobian: Matrix = both.map(|(x, s)| x * s.transpose()).sum();
+    /// Gradients of all N_i at the centre of an element with these nodes; `None` where it is inverted there.
+    pub fn central_gradients(nodes: &[Vector; NODES]) -> Option<[Vector; NODES]> {
+        let slopes = Parent::<NODES>::slopes(&Parent::<NODES>::CENTRE).map(Vector::from);
+        let (jacobian, determinant) = jacobian(nodes, &slopes);
         let inverse = jacobian.try_inverse()?;
-        let is_right = jacobian.determinant() > 0.0;
-        is_right.then(|| slopes.map(|slope| inverse.tr_mul(&slope)))
+        (determinant > 0.0).then(|| slopes.map(|slope| inverse.tr_mul(&slope)))
     }
 }
 
@@ -139,7 +132,7 @@ impl<const NODES: usize> ElementGeometry<NODES> {
         &self.gradients
     }
 
-    /// Weights of the Gauss points, w = det ∂X/∂ξ in mm³.
+    /// Weights of the Gauss points in mm³.
     #[inline(always)]
     pub fn weights(&self) -> &[f64; 8] {
         &self.weights

@@ -1,11 +1,11 @@
-//! Energy of one hexahedron, and of a Maxwell branch of it, with their first and second derivatives by places and potentials of its nodes, and by
+//! Energy of one element, and of a Maxwell branch of it, with their first and second derivatives by places and potentials of its nodes, and by
 //! viscous strains.
 
 use super::dual::{Dual, Rated};
 use super::law::Field;
 use crate::math::{Matrix, Vector};
 
-/// Energy W of one hexahedron with its derivatives: forces, stiffness, and their electric counterparts.
+/// Energy W of one element with its derivatives: forces, stiffness, and their electric counterparts.
 ///
 /// A caller keeps one and has it filled again and again. `Local<Passive>` has no electric part.
 #[derive(Clone, Debug)]
@@ -154,7 +154,7 @@ pub const COORDINATES: usize = 5;
 /// A number at each of the eight Gauss points.
 pub(super) type Eight = [f64; 8];
 
-/// Energy W of a branch of one hexahedron with its derivatives; those by viscous strains have a value at each Gauss point.
+/// Energy W of a branch of one element with its derivatives; those by viscous strains have a value at each Gauss point.
 ///
 /// A caller keeps one and has it filled again and again.
 #[derive(Clone, Debug)]

@@ -1,4 +1,4 @@
-//! Finite elements of a dielectric elastomer, the trilinear hexahedron so far: pure formulas, without index, mesh or time.
+//! Finite elements of a dielectric elastomer, of any [interpolation](crate::mesh::interpolation): pure formulas, without index or time.
 //!
 //! N nodes at x_i, N in the type, with electric potentials φ_i span, with the shape functions N_i and G_i = ∂N_i/∂X,
 //!
@@ -6,7 +6,7 @@
 //! F = Σ x_i ⊗ G_i,      E = −Σ φ_i G_i,      W(x, φ) = Σ_g w_g Ω(F, E),
 //! ```
 //!
-//! summed over eight Gauss points, 2 × 2 × 2 of weight w_g = det ∂X/∂ξ for the hexahedron. [`ElementGeometry`] holds G_i and w_g, [`Elastomer`] the law Ω with
+//! summed over eight Gauss points with weights w_g. [`ElementGeometry`] holds G_i and w_g, [`Elastomer`] the law Ω with
 //! the derivatives of W to third order, [`Viscosity`] the virtual work of σ = η d, [`MaxwellSpring`] the energy of a Maxwell branch, [`Fields`] what is shown of a state,
 //! [`FieldPoint`] the true field that limits bound.
 //!

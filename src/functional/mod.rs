@@ -43,7 +43,7 @@ pub use kernel::{Kernel, Scatter};
 pub use laws::{LawElement, MOST_PARAMETERS, Move};
 pub use node_blocks::{NodeBlocks, NodeVolume, Pressures, ScalarPlace, VectorPlace};
 pub use paths::Path;
-pub use pressure::PressureFace;
+pub use pressure::{Areas, PressureFace, areas};
 pub use scaled::{FreeConstant, ScaledElement};
 pub use stencil::{ScalarArg, Stencil, VectorArg};
 pub use term::{

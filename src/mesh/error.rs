@@ -75,8 +75,8 @@ impl fmt::Display for MeshPlace {
 /// Identification of an element.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ElementName {
-    /// Index into [`hexahedra`](super::Mesh::hexahedra).
-    Index(usize),
+    /// Kind and number in the mesh.
+    Number(&'static str, usize),
     /// Position in a file.
     File {
         /// File as the user named it.
@@ -91,7 +91,7 @@ pub enum ElementName {
 impl fmt::Display for ElementName {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Index(index) => write!(f, "hexahedron {index}"),
+            Self::Number(kind, number) => write!(f, "{kind} {number}"),
             Self::File { file, line, number } => write!(f, "{file}:{line}: element {number}"),
         }
     }

@@ -2,8 +2,13 @@
 
 use crate::math::DisjointSets;
 use crate::mesh::Mesh;
+use crate::mesh::interpolation::{Cell, around, corners, flat_parts};
 use nalgebra::Vector3;
+use rustc_hash::FxHashMap;
 use std::collections::HashMap;
+
+/// Faces of elements by their nodes.
+pub type Faces = Vec<Vec<usize>>;
 
 impl Mesh {
     /// The mesh with its nodes moved to `map(x)`; a map that mirrors space makes a mesh that
@@ -28,16 +33,20 @@ impl Mesh {
         }
     }
 
-    /// Length in mm of the shortest edge of an element; infinite for no elements.
+    /// Length in mm of the shortest way between two nodes along an edge of an element; infinite for no elements.
     pub fn shortest_edge(&self) -> f64 {
-        let length = |[a, b]: [usize; 2]| (self.nodes[a] - self.nodes[b]).norm();
-        let edges = self.hexahedra.iter().flat_map(|nodes| {
-            let faces = FACES.into_iter();
-            faces
-                .flat_map(|face| (0..4).map(move |i| [face[i], face[(i + 1) % 4]]))
-                .map(|edge| edge.map(|corner| nodes[corner]))
-        });
-        edges.map(length).fold(f64::INFINITY, f64::min)
+        let lengths = self.elements().flat_map(|nodes| self.edge_lengths(nodes));
+        lengths.fold(f64::INFINITY, f64::min)
+    }
+
+    /// Lengths in mm of the edges of an element between neighbouring nodes, of each face in turn.
+    pub fn edge_lengths(&self, nodes: &[usize]) -> Vec<f64> {
+        let faces = Cell::of(nodes).faces().iter();
+        let rings = faces.map(|face| around(face));
+        let edges = rings
+            .flat_map(|ring| (0..ring.len()).map(move |i| [ring[i], ring[(i + 1) % ring.len()]]));
+        let ends = edges.map(|ends| ends.map(|end| self.nodes[nodes[end]]));
+        ends.map(|[a, b]| (a - b).norm()).collect()
     }
 
     /// Nodes with `|x_axis − value| ≤ tolerance`, ascending; axes are 0, 1, 2 for x, y, z, lengths in mm.
@@ -64,46 +73,57 @@ pub(super) fn bounds(points: &[Vector3<f64>]) -> (Vector3<f64>, Vector3<f64>) {
     points.fold(start, |(lower, upper), x| (lower.inf(x), upper.sup(x)))
 }
 
-/// Corners of the six faces of a hexahedron, counter-clockwise seen from outside: lower, upper, then the sides.
-pub const FACES: [[usize; 4]; 6] = [
-    [0, 3, 2, 1],
-    [4, 5, 6, 7],
-    [0, 1, 5, 4],
-    [1, 2, 6, 5],
-    [2, 3, 7, 6],
-    [3, 0, 4, 7],
-];
-
 impl Mesh {
-    /// Nodes of the faces that belong to one element only, counter-clockwise seen from outside, in the order of the
-    /// elements.
-    pub fn boundary_quads(&self) -> Vec<[usize; 4]> {
+    /// Nodes of the faces that belong to one element only, in the order of the elements: corners counter-clockwise seen from outside, then the
+    /// middles of its edges where it has any.
+    pub fn boundary(&self) -> Faces {
         let faces = || {
-            let elements = self.hexahedra.iter();
-            elements.flat_map(|nodes| FACES.map(|face| face.map(|corner| nodes[corner])))
+            let elements = self.elements();
+            elements.flat_map(|nodes| {
+                Cell::of(nodes)
+                    .faces()
+                    .iter()
+                    .map(move |face| (nodes, *face))
+            })
         };
-        let key = |mut face: [usize; 4]| {
-            face.sort_unstable();
-            face
+        let key = |of: (&[usize], &[usize])| {
+            let (nodes, face) = of;
+            let mut key = [usize::MAX; 4];
+            for (key, &place) in key.iter_mut().zip(corners(face)) {
+                *key = nodes[place];
+            }
+            key.sort_unstable();
+            key
         };
-        let mut elements: HashMap<[usize; 4], usize> = HashMap::new();
+        let mut elements: FxHashMap<[usize; 4], usize> = FxHashMap::default();
         for face in faces() {
             *elements.entry(key(face)).or_default() += 1;
         }
-        faces().filter(|&face| elements[&key(face)] == 1).collect()
+        let alone = faces().filter(|face| elements[&key(*face)] == 1);
+        alone
+            .map(|(nodes, face)| face.iter().map(|&place| nodes[place]).collect())
+            .collect()
+    }
+
+    /// The same in flat parts by their corners, as of [`flat_parts`].
+    pub fn boundary_quads(&self) -> Vec<[usize; 4]> {
+        self.boundary()
+            .iter()
+            .flat_map(|face| flat_parts(face))
+            .collect()
     }
 
     /// Elements of each connected part, ascending, parts by their first element; elements that share a node are connected.
     pub fn parts(&self) -> Vec<Vec<usize>> {
         let mut sets = DisjointSets::new(self.nodes.len());
-        for nodes in &self.hexahedra {
+        for nodes in self.elements() {
             for &node in &nodes[1..] {
                 sets.join(nodes[0], node);
             }
         }
         let mut part_of = HashMap::new();
         let mut parts: Vec<Vec<usize>> = Vec::new();
-        for (element, nodes) in self.hexahedra.iter().enumerate() {
+        for (element, nodes) in self.elements().enumerate() {
             let part = *part_of
                 .entry(sets.smallest(nodes[0]))
                 .or_insert(parts.len());

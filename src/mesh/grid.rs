@@ -80,6 +80,7 @@ impl Grid {
             regions: vec![0; hexahedra.len()],
             region_names: vec!["box".to_owned()],
             hexahedra,
+            tetrahedra: Vec::new(),
             sets: sides([n_x, n_y, n_z]),
         }
     }
@@ -134,7 +135,7 @@ impl Mesh {
             |all: usize, part: usize| (part > 0 && all.is_multiple_of(part)).then(|| all / part);
         let counts = [n_x, whole(n_xy, n_x)?, whole(self.nodes.len(), n_xy)?];
         let cells: usize = counts.iter().map(|count| count.saturating_sub(1)).product();
-        if origin != 0 || cells != self.hexahedra.len() {
+        if origin != 0 || cells != self.element_count() {
             return None;
         }
         let [cells_x, cells_y] = [counts[0] - 1, counts[1] - 1];

@@ -1,4 +1,4 @@
-//! Hexahedral meshes: nodes, elements, named node sets. Geometry only: no material, no unknown.
+//! Meshes of hexahedra or tetrahedra: nodes, elements, named node sets. Geometry only: no material, no unknown.
 //!
 //! Meshes come from planes ([`grid`]) or from a file ([`gmsh`]); [`Mesh::check`] says whether elements can be integrated.
 //! [`triangulated`]: surfaces of triangles; [`enclosed`]: solids within them.
@@ -8,25 +8,18 @@ pub mod error;
 pub mod geometry;
 pub mod gmsh;
 pub mod grid;
+mod hexahedron;
+pub mod interpolation;
 pub mod quality;
+mod tetrahedron;
 pub mod triangulated;
 
+pub use hexahedron::CORNERS;
+use interpolation::Cell;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
-/// Nodes of a hexahedron in the parent cube [−1, 1]³; also the signs of the Gauss points, of which each lies towards a node.
-pub const CORNERS: [[f64; 3]; 8] = [
-    [-1.0, -1.0, -1.0],
-    [1.0, -1.0, -1.0],
-    [1.0, 1.0, -1.0],
-    [-1.0, 1.0, -1.0],
-    [-1.0, -1.0, 1.0],
-    [1.0, -1.0, 1.0],
-    [1.0, 1.0, 1.0],
-    [-1.0, 1.0, 1.0],
-];
-
-/// Trilinear hexahedra over shared nodes.
+/// Elements of one kind over shared nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Mesh {
     /// Places of the nodes in mm.
@@ -34,10 +27,43 @@ pub struct Mesh {
     /// Nodes of each hexahedron: the lower face counter-clockwise seen from above, then the upper face above it, which is
     /// the order of VTK and Gmsh.
     pub hexahedra: Vec<[usize; 8]>,
-    /// Region (a part with one material) of each hexahedron, an index into `region_names`.
+    /// Nodes of each quadratic tetrahedron: three corners, counter-clockwise seen from the fourth, then it, then the middles of the edges
+    /// 01, 12, 02, 03, 13 and 23, which is the order of VTK.
+    pub tetrahedra: Vec<[usize; 10]>,
+    /// Region (a part with one material) of each element, an index into `region_names`.
     pub regions: Vec<usize>,
     /// Names of the regions.
     pub region_names: Vec<String>,
     /// Nodes by the name of a face or set, ascending.
     pub sets: BTreeMap<String, Vec<usize>>,
+}
+
+impl Mesh {
+    /// Number of elements.
+    pub fn element_count(&self) -> usize {
+        self.hexahedra.len() + self.tetrahedra.len()
+    }
+
+    /// Nodes of each element.
+    pub fn elements(&self) -> impl Iterator<Item = &[usize]> + Clone {
+        let hexahedra = self.hexahedra.iter().map(<[usize; 8]>::as_slice);
+        let tetrahedra = self.tetrahedra.iter().map(<[usize; 10]>::as_slice);
+        hexahedra.chain(tetrahedra)
+    }
+
+    /// Nodes of an element.
+    pub fn element(&self, number: usize) -> &[usize] {
+        match number.checked_sub(self.hexahedra.len()) {
+            None => &self.hexahedra[number],
+            Some(number) => &self.tetrahedra[number],
+        }
+    }
+
+    /// The kind of its elements, that of the first one.
+    pub fn cell(&self) -> Cell {
+        match self.tetrahedra.is_empty() {
+            true => Cell::Hexahedron,
+            false => Cell::Tetrahedron,
+        }
+    }
 }

@@ -4,8 +4,9 @@
 //! columns of `∂x/∂ξ` there: the ratio is 1 for bricks of any proportions, 0 for a flat corner, −1 for a brick turned
 //! inside out.
 
+use super::Mesh;
 use super::error::{ElementName, MeshError, MeshPlace};
-use super::{CORNERS, Mesh};
+use super::interpolation::{Cell, Element, Interpolation, Parent};
 use crate::math::refuse;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashMap;
@@ -15,18 +16,21 @@ use std::collections::HashMap;
 const LIMIT: f64 = 1e-6;
 
 impl Mesh {
-    /// Checks that there is an element, that each one has eight nodes that exist, differ, are finite and are those of no
+    /// Checks that there is an element, that each one has nodes that exist, differ, are finite and are those of no
     /// other element, that its determinant is positive at the corners and at the Gauss points, and that regions and sets
     /// exist.
     ///
     /// # Errors
     /// One of these does not hold.
     pub fn check(&self) -> Result<(), MeshError> {
-        self.check_elements(ElementName::Index)?;
-        let (regions, elements) = (self.regions.len(), self.hexahedra.len());
+        let kind = self.cell().name();
+        refuse!(unless self.hexahedra.is_empty() || self.tetrahedra.is_empty(), MeshPlace::Whole;
+            found "hexahedra and tetrahedra", expected "elements of one kind");
+        self.check_elements(|number| ElementName::Number(kind, number))?;
+        let (regions, elements) = (self.regions.len(), self.element_count());
         refuse!(if regions != elements, MeshPlace::Whole;
-            found format!("{regions} regions of {elements} hexahedra"),
-            expected "one region per hexahedron");
+            found format!("{regions} regions of {elements} elements"),
+            expected "one region per element");
         let names = self.region_names.len();
         let beyond = self.regions.iter().find(|&&region| region >= names);
         refuse!(if let Some(region) = beyond, MeshPlace::Whole;
@@ -50,11 +54,11 @@ impl Mesh {
         &self,
         name: impl Fn(usize) -> ElementName,
     ) -> Result<(), MeshError> {
-        refuse!(if self.hexahedra.is_empty(), MeshPlace::Whole;
-            found "no element", expected "one hexahedron or more");
-        let mut seen: HashMap<[usize; 8], usize> = HashMap::new();
-        for (element, nodes) in self.hexahedra.iter().enumerate() {
-            let mut sorted = *nodes;
+        refuse!(if self.element_count() == 0, MeshPlace::Whole;
+            found "no element", expected "one hexahedron or tetrahedron or more");
+        let mut seen: HashMap<Vec<usize>, usize> = HashMap::new();
+        for (element, nodes) in self.elements().enumerate() {
+            let mut sorted = nodes.to_vec();
             sorted.sort_unstable();
             let twin = seen.insert(sorted, element);
             if let Some((found, expected)) = self.fault(nodes, twin, &name) {
@@ -69,7 +73,7 @@ impl Mesh {
     /// Returns the fault of an element as the values found and expected, if it has one; `twin` has the same nodes.
     fn fault(
         &self,
-        nodes: &[usize; 8],
+        nodes: &[usize],
         twin: Option<usize>,
         name: &impl Fn(usize) -> ElementName,
     ) -> Option<(String, String)> {
@@ -78,22 +82,25 @@ impl Mesh {
             let expected = format!("indices below the number of nodes, {count}");
             return Some((format!("node {node}"), expected));
         }
-        let repeated = (1..8).find(|&corner| nodes[..corner].contains(&nodes[corner]));
+        let repeated = (1..nodes.len()).find(|&corner| nodes[..corner].contains(&nodes[corner]));
         if let Some(corner) = repeated {
             let x = self.nodes[nodes[corner]];
             let found = format!("the node at ({}, {}, {}) repeated", x.x, x.y, x.z);
-            return Some((found, "eight different nodes".to_owned()));
+            return Some((found, format!("{} different nodes", nodes.len())));
         }
         if let Some(twin) = twin {
             let found = format!("the nodes of {}", name(twin));
-            return Some((found, "each hexahedron once, in one region".to_owned()));
+            return Some((found, "each element once, in one region".to_owned()));
         }
-        let places = nodes.map(|node| self.nodes[node]);
+        let places: Vec<_> = nodes.iter().map(|&node| self.nodes[node]).collect();
         if let Some(x) = places.iter().find(|x| !x.iter().all(|x| x.is_finite())) {
             let found = format!("a node at ({}, {}, {})", x.x, x.y, x.z);
             return Some((found, "finite coordinates".to_owned()));
         }
-        let (ratio, place) = smallest_ratio(&places);
+        let (ratio, place) = match Cell::of(nodes) {
+            Cell::Hexahedron => smallest_ratio::<8>(&places),
+            Cell::Tetrahedron => smallest_ratio::<10>(&places),
+        };
         if ratio > LIMIT {
             return None;
         }
@@ -102,43 +109,55 @@ impl Mesh {
         } else {
             format!("a degenerate element, with a determinant ratio of {ratio:.1e} at {place}")
         };
-        let expected = "a Jacobian determinant that is positive, more than 1e-6 of that of a brick with the same edges, \
-             at all corners and Gauss points (nodes of the lower face counter-clockwise seen from above, then those of the \
-             upper face above them)";
-        Some((found, expected.to_owned()))
+        let order = match Cell::of(nodes) {
+            Cell::Hexahedron => {
+                "nodes of the lower face counter-clockwise seen from above, then those of the upper face above them"
+            }
+            Cell::Tetrahedron => {
+                "three corners counter-clockwise seen from the fourth, then it, then the middles of the edges"
+            }
+        };
+        let expected = format!(
+            "a Jacobian determinant that is positive, more than 1e-6 of that of a brick with the same edges, \
+             at all nodes and Gauss points ({order})"
+        );
+        Some((found, expected))
     }
 }
 
-/// The smallest ratio of determinants over the corners and the Gauss points of an element, and where.
-fn smallest_ratio(places: &[Vector3<f64>; 8]) -> (f64, String) {
+/// The smallest ratio of determinants over the nodes and the Gauss points of an element, and where.
+fn smallest_ratio<const NODES: usize>(places: &[Vector3<f64>]) -> (f64, String)
+where
+    Parent<NODES>: Element<NODES>,
+{
     // Differences in units of the largest one: neither large nor small lengths leave the range of numbers.
-    let edges = places.map(|x| x - places[0]);
+    let edges: Vec<_> = places.iter().map(|x| x - places[0]).collect();
     let size = edges.iter().map(Vector3::amax).fold(0.0, f64::max);
-    let scaled = edges.map(|edge| edge / size);
-    let gauss = 1.0 / 3.0_f64.sqrt();
+    let scaled: Vec<_> = edges.iter().map(|edge| edge / size).collect();
     let mut smallest = (f64::INFINITY, String::new());
-    for (kind, at) in [("corner", 1.0), ("Gauss point", gauss)] {
-        for (index, corner) in CORNERS.iter().enumerate() {
-            let ratio = determinant_ratio(&scaled, &corner.map(|xi| at * xi));
+    let nodes = Parent::<NODES>::PLACES;
+    let points = Parent::<NODES>::POINTS.map(|(at, _)| at);
+    for (kind, all) in [("node", &nodes[..]), ("Gauss point", &points)] {
+        for (number, at) in all.iter().enumerate() {
+            let ratio = determinant_ratio::<NODES>(&scaled, at);
             // A ratio that is not a number (all nodes at one place, or beyond the range of numbers) is no better than zero.
             let ratio = if ratio.is_nan() { 0.0 } else { ratio };
             if ratio < smallest.0 {
-                smallest = (ratio, format!("{kind} {index}"));
+                smallest = (ratio, format!("{kind} {number}"));
             }
         }
     }
     smallest
 }
 
-/// `det(∂x/∂ξ) / Π_k |∂x/∂ξ_k|` with `∂x/∂ξ_k = Σ_a x_a s_ak/8 Π_{l≠k} (1 + s_al ξ_l)`, s the corners; x in units of the
-/// element's size.
-fn determinant_ratio(places: &[Vector3<f64>; 8], xi: &[f64; 3]) -> f64 {
+/// `det(∂x/∂ξ) / Π_k |∂x/∂ξ_k|` with x in units of the element's size.
+fn determinant_ratio<const NODES: usize>(places: &[Vector3<f64>], xi: &[f64; 3]) -> f64
+where
+    Parent<NODES>: Element<NODES>,
+{
+    let slopes = Parent::<NODES>::slopes(xi);
     let column = |k: usize| {
-        let (l, m) = ((k + 1) % 3, (k + 2) % 3);
-        let terms = places.iter().zip(&CORNERS).map(|(x, s)| {
-            let weight = s[k] * (1.0 + s[l] * xi[l]) * (1.0 + s[m] * xi[m]) / 8.0;
-            x * weight
-        });
+        let terms = places.iter().zip(&slopes).map(|(x, slope)| x * slope[k]);
         let column: Vector3<f64> = terms.sum();
         column / column.norm().max(LIMIT)
     };

@@ -1,7 +1,8 @@
 //! Triangulated surfaces: outlines of bodies, from files or of simple shapes.
 
-use crate::mesh::geometry::bounds;
-use crate::mesh::{CORNERS, Mesh};
+use crate::mesh::Mesh;
+use crate::mesh::geometry::{Faces, bounds};
+use crate::mesh::interpolation::{Interpolation, Parent, Point};
 use nalgebra::Vector3;
 use rustc_hash::FxHashMap;
 use std::collections::{BTreeMap, HashSet};
@@ -157,15 +158,15 @@ pub fn circle(
 
 impl Mesh {
     /// Faces of the boundary all of whose nodes are among these, counter-clockwise seen from outside.
-    pub fn faces_of(&self, nodes: &[usize]) -> Vec<[usize; 4]> {
+    pub fn faces_of(&self, nodes: &[usize]) -> Faces {
         let nodes: HashSet<usize> = nodes.iter().copied().collect();
-        let mut faces = self.boundary_quads();
+        let mut faces = self.boundary();
         faces.retain(|face| face.iter().all(|node| nodes.contains(node)));
         faces
     }
 
     /// The integral ∫ N n dA of the shape function of each node times the outward normal over faces, in mm².
-    pub fn normals_of(&self, faces: &[[usize; 4]]) -> BTreeMap<usize, Vector3<f64>> {
+    pub fn normals_of(&self, faces: &[Vec<usize>]) -> BTreeMap<usize, Vector3<f64>> {
         let mut sums = BTreeMap::new();
         self.integrate(faces, |node, shape, normal| {
             *sums.entry(node).or_insert_with(Vector3::zeros) += normal * shape;
@@ -174,7 +175,7 @@ impl Mesh {
     }
 
     /// The integral ∫ N dA of the shape function of each node over faces, in mm².
-    pub fn areas_of(&self, faces: &[[usize; 4]]) -> BTreeMap<usize, f64> {
+    pub fn areas_of(&self, faces: &[Vec<usize>]) -> BTreeMap<usize, f64> {
         let mut sums = BTreeMap::new();
         self.integrate(faces, |node, shape, normal| {
             *sums.entry(node).or_default() += normal.norm() * shape;
@@ -182,26 +183,42 @@ impl Mesh {
         sums
     }
 
-    /// Hands over node, shape function and x_,ξ × x_,η of each of 2 × 2 Gauss points, which weigh one.
-    fn integrate(&self, faces: &[[usize; 4]], mut add: impl FnMut(usize, f64, Vector3<f64>)) {
+    /// Hands over node, shape function and x_,ξ × x_,η times its weight of each point of faces.
+    fn integrate(&self, faces: &[Vec<usize>], mut add: impl FnMut(usize, f64, Vector3<f64>)) {
+        let rules = [shapes::<4>(), shapes::<6>()];
         for face in faces {
-            // The corners of the square are the first ones of the cube.
-            let corners: [[f64; 2]; 4] = std::array::from_fn(|a| [CORNERS[a][0], CORNERS[a][1]]);
-            for point in corners.map(|corner| corner.map(|c| c / 3.0_f64.sqrt())) {
-                let factors = corners.map(|[a, b]| [1.0 + a * point[0], 1.0 + b * point[1]]);
+            let rule = &rules[usize::from(face.len() == 6)];
+            for point in rule {
                 let along = |axis: usize| -> Vector3<f64> {
-                    let corners = corners.iter().zip(&factors).zip(face);
-                    corners
-                        .map(|((corner, f), &n)| {
-                            self.nodes[n] * (0.25 * corner[axis] * f[1 - axis])
-                        })
-                        .sum()
+                    let slopes = point.slopes.iter().zip(face);
+                    slopes.map(|(slope, &n)| self.nodes[n] * slope[axis]).sum()
                 };
-                let normal = along(0).cross(&along(1));
-                for (&node, [a, b]) in face.iter().zip(factors) {
-                    add(node, 0.25 * a * b, normal);
+                let normal = along(0).cross(&along(1)) * point.weight;
+                for (&node, value) in face.iter().zip(&point.values) {
+                    add(node, *value, normal);
                 }
             }
         }
     }
+}
+
+/// Shape functions and their slopes at a point of a face.
+struct FacePoint {
+    weight: f64,
+    values: Vec<f64>,
+    slopes: Vec<[f64; 2]>,
+}
+
+/// Those of the faces with so many nodes.
+fn shapes<const NODES: usize>() -> Vec<FacePoint>
+where
+    Parent<NODES>: Interpolation<2, NODES>,
+{
+    let points = Parent::<NODES>::quadrature().into_iter();
+    let shape = |(at, weight): Point<2>| FacePoint {
+        weight,
+        values: Parent::<NODES>::values(&at).to_vec(),
+        slopes: Parent::<NODES>::slopes(&at).to_vec(),
+    };
+    points.map(shape).collect()
 }

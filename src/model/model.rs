@@ -414,7 +414,11 @@ pub(super) fn floating(
     blocks.iter().find_map(|block| {
         let mesh = &block.solid.mesh;
         mesh.parts().iter().find_map(|part| {
-            let mut members: Vec<usize> = part.iter().flat_map(|&e| mesh.hexahedra[e]).collect();
+            let mut members: Vec<usize> = part
+                .iter()
+                .flat_map(|&e| mesh.element(e))
+                .copied()
+                .collect();
             members.sort_unstable();
             members.dedup();
             let motion = free_motion(&members, block, vectors, nodes)?;

@@ -3,6 +3,7 @@
 //! The arrow of a load is along the force from the point on which it acts, against a face under a pressure, or about the axis of the joint as an
 //! arc, as long as the load is large relative to its largest size in the motion. Surface charges have none.
 
+use crate::mesh::interpolation::flat_parts;
 use crate::model::Component;
 use crate::model::components::{BlockLoad, Contact, Load, LoadPlace};
 use crate::model::system::{Attachment, JointKind, System};
@@ -224,8 +225,12 @@ fn faces(system: &System, load: &Load) -> Vec<usize> {
             .sum::<Vector3<f64>>()
             / 4.0
     };
-    let of_load: HashSet<&[usize; 4]> = load.faces().iter().collect();
-    let acts = |(_, face): &(usize, &[usize; 4])| of_load.contains(face);
+    let of_load: HashSet<[usize; 4]> = load
+        .faces()
+        .iter()
+        .flat_map(|face| flat_parts(face))
+        .collect();
+    let acts = |(_, face): &(usize, &[usize; 4])| of_load.contains(*face);
     let middle = of_load
         .iter()
         .map(|face| centre(face))

@@ -13,13 +13,12 @@ use std::fmt::Write;
 use std::fs;
 use std::io::Write as _;
 
+use crate::mesh::interpolation::Cell;
 use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;
 use crate::report::quoting::escape;
 
-/// Number of a trilinear hexahedron in VTK.
-const HEXAHEDRON: u8 = 12;
 /// Attribute of a file whose numbers are packed.
 pub(super) const PACKED: &str = r#" compressor="vtkZLibDataCompressor""#;
 /// Bytes that are packed at once.
@@ -41,8 +40,8 @@ pub struct Field<'a> {
 pub struct UnstructuredGrid<'a> {
     /// Places of the points.
     pub points: Vec<Vector3<f64>>,
-    /// Points of each cell, ordered as in [`Mesh::hexahedra`](crate::mesh::Mesh::hexahedra).
-    pub hexahedra: &'a [[usize; 8]],
+    /// Points of each cell, ordered as in a [`Mesh`](crate::mesh::Mesh).
+    pub cells: Vec<&'a [usize]>,
     /// Quantities at the points.
     pub point_data: Vec<Field<'a>>,
     /// Quantities in the cells.
@@ -168,7 +167,7 @@ pub(crate) fn remove_from(first: usize, folder: &str, files: &mut FileSet) {
 
 fn piece(text: &mut String, grids: &[UnstructuredGrid<'_>]) {
     let points: usize = grids.iter().map(|grid| grid.points.len()).sum();
-    let cells: usize = grids.iter().map(|grid| grid.hexahedra.len()).sum();
+    let cells: usize = grids.iter().map(|grid| grid.cells.len()).sum();
     line(
         text,
         format_args!(r#"<Piece NumberOfPoints="{points}" NumberOfCells="{cells}">"#),
@@ -180,16 +179,22 @@ fn piece(text: &mut String, grids: &[UnstructuredGrid<'_>]) {
     array(text, "Float64", "Points", 3, &bytes_of(places));
     text.push_str("</Points>\n<Cells>\n");
     array(text, "Int64", "connectivity", 1, &connectivity(grids));
-    let ends = (1..=cells as u64).flat_map(|end| (8 * end).to_le_bytes());
-    array(text, "Int64", "offsets", 1, &ends.collect::<Vec<u8>>());
-    array(text, "UInt8", "types", 1, &vec![HEXAHEDRON; cells]);
+    let elements = || grids.iter().flat_map(|grid| grid.cells.iter().copied());
+    let ends = elements().scan(0, |end, points| {
+        *end += points.len() as u64;
+        Some(*end)
+    });
+    let ends = ends.flat_map(u64::to_le_bytes).collect::<Vec<u8>>();
+    array(text, "Int64", "offsets", 1, &ends);
+    let types: Vec<u8> = elements().map(|points| Cell::of(points).of_vtk()).collect();
+    array(text, "UInt8", "types", 1, &types);
     text.push_str("</Cells>\n");
 
     data(text, "PointData", grids, |grid| {
         (&grid.point_data, grid.points.len())
     });
     data(text, "CellData", grids, |grid| {
-        (&grid.cell_data, grid.hexahedra.len())
+        (&grid.cell_data, grid.cells.len())
     });
     text.push_str("</Piece>\n");
 }
@@ -235,7 +240,7 @@ fn data<'g, 'a>(
 fn connectivity(grids: &[UnstructuredGrid<'_>]) -> Vec<u8> {
     let (mut bytes, mut before) = (Vec::new(), 0);
     for grid in grids {
-        for &point in grid.hexahedra.as_flattened() {
+        for &point in grid.cells.iter().copied().flatten() {
             let points = grid.points.len();
             assert!(point < points, "a cell has point {point} of {points}");
             bytes.extend(((before + point) as u64).to_le_bytes());

@@ -171,7 +171,7 @@ impl Skin {
         let (places, potentials) = (block.places(&at.x), block.potentials(scalars));
         let mut sums = vec![[0.0; 3]; places.len()];
         let at_surface = nodes.iter().copied().collect::<HashSet<_>>();
-        for (e, corners) in block.solid.mesh.hexahedra.iter().enumerate() {
+        for (e, corners) in block.solid.mesh.elements().enumerate() {
             if !corners.iter().any(|node| at_surface.contains(node)) {
                 continue;
             }

@@ -30,3 +30,4 @@ mod oracle;
 mod sought;
 mod sought_laws;
 mod sought_limits;
+mod tetrahedron;

@@ -1,4 +1,4 @@
-//! A hexahedron by textbook formulas with loops over dual numbers.
+//! An element by textbook formulas with loops over dual numbers, and the hexahedron.
 
 use crate::common::random::Random;
 use crate::oracle::{Combination, Flat, Number, added, oracle_of_outer, oracle_of_sum};
@@ -103,18 +103,19 @@ pub(crate) fn gauss(nodes: &[Vector; 8]) -> Vec<(f64, [[f64; 3]; 8])> {
     points
 }
 
-/// F = Σ x_i ⊗ G_i of the first 24 numbers.
-pub(crate) fn deformation<D: DualNum<f64> + Copy>(p: &[D], gradients: &[[f64; 3]; 8]) -> M<D> {
+/// F = Σ x_i ⊗ G_i of the first numbers.
+pub(crate) fn deformation<D: DualNum<f64> + Copy>(p: &[D], gradients: &[[f64; 3]]) -> M<D> {
     std::array::from_fn(|a| {
         std::array::from_fn(|m| {
-            (0..8).fold(D::zero(), |sum, i| sum + p[3 * i + a] * gradients[i][m])
+            (0..gradients.len()).fold(D::zero(), |sum, i| sum + p[3 * i + a] * gradients[i][m])
         })
     })
 }
 
 /// The nine entries of F of coordinates that begin at a place among all arguments.
-pub(crate) fn of_deformation(gradients: &[[f64; 3]; 8], first: usize) -> Vec<Combination> {
-    let entry = |k: usize| (0..8).map(move |i| (first + 3 * i + k / 3, gradients[i][k % 3]));
+pub(crate) fn of_deformation(gradients: &[[f64; 3]], first: usize) -> Vec<Combination> {
+    let nodes = gradients.len();
+    let entry = |k: usize| (0..nodes).map(move |i| (first + 3 * i + k / 3, gradients[i][k % 3]));
     (0..9).map(|k| entry(k).collect()).collect()
 }
 
@@ -123,16 +124,16 @@ pub(crate) fn matrix<D: Copy>(q: &[D]) -> M<D> {
     std::array::from_fn(|a| std::array::from_fn(|m| q[3 * a + m]))
 }
 
-/// The energy of docs/theory.md, 2.1 through C and C⁻¹, arguments: 24 coordinates, then 8 potentials.
-pub(crate) struct Naive {
+/// The energy of docs/theory.md, 2.1 through C and C⁻¹, arguments: coordinates, then potentials.
+pub(crate) struct Naive<const NODES: usize = 8> {
     pub(crate) mu: f64,
     pub(crate) lambda: f64,
     pub(crate) electric: Option<Dielectric>,
     pub(crate) volume: Volume,
-    pub(crate) points: Vec<(f64, [[f64; 3]; 8])>,
+    pub(crate) points: Vec<(f64, [[f64; 3]; NODES])>,
 }
 
-impl Naive {
+impl<const NODES: usize> Naive<NODES> {
     pub(crate) fn energy<D: DualNum<f64> + Copy>(&self, p: &[D]) -> D {
         let mut energy = D::zero();
         let mut deformed = D::zero();
@@ -141,7 +142,7 @@ impl Naive {
             deformed += determinant(f) * *w;
             let e = self.electric.map(|_| {
                 std::array::from_fn(|m| {
-                    (0..8).fold(D::zero(), |sum, i| sum - p[24 + i] * gradients[i][m])
+                    (0..NODES).fold(D::zero(), |sum, i| sum - p[3 * NODES + i] * gradients[i][m])
                 })
             });
             energy += self.density(f, e) * *w;
@@ -182,10 +183,11 @@ impl Naive {
         w: &[f64],
         further: impl Fn(M<Number>) -> Number,
     ) -> (Flat, Flat) {
-        let field = |gradients: &[[f64; 3]; 8], m: usize| -> Combination {
-            (0..8).map(|i| (24 + i, -gradients[i][m])).collect()
+        let field = |gradients: &[[f64; 3]; NODES], m: usize| -> Combination {
+            let potentials = (0..NODES).map(|i| (3 * NODES + i, -gradients[i][m]));
+            potentials.collect()
         };
-        let own = |(_, gradients): &(f64, [[f64; 3]; 8])| {
+        let own = |(_, gradients): &(f64, [[f64; 3]; NODES])| {
             let mut own = of_deformation(gradients, 0);
             if self.electric.is_some() {
                 own.extend((0..3).map(|m| field(gradients, m)));

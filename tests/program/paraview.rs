@@ -99,7 +99,7 @@ fn a_solid_reads_back_as_it_was() {
     ];
     let grid = UnstructuredGrid {
         points: mesh.nodes.clone(),
-        hexahedra: &mesh.hexahedra,
+        cells: mesh.elements().collect(),
         point_data: point_data.to_vec(),
         cell_data: cell_data.to_vec(),
     };
@@ -144,13 +144,13 @@ fn solids_stand_one_after_the_other() {
     let grids = [
         UnstructuredGrid {
             points: mesh.nodes.clone(),
-            hexahedra: &mesh.hexahedra,
+            cells: mesh.elements().collect(),
             point_data: potential.to_vec(),
             cell_data: Vec::new(),
         },
         UnstructuredGrid {
             points: apart.nodes.clone(),
-            hexahedra: &apart.hexahedra,
+            cells: apart.elements().collect(),
             point_data: Vec::new(),
             cell_data: stretch.to_vec(),
         },
@@ -205,7 +205,7 @@ fn a_series_lists_what_it_wrote() {
     let mesh = Planes::uniform(Vector3::zeros(), Vector3::repeat(1.0), [1, 1, 1]).mesh();
     let grids = [UnstructuredGrid {
         points: mesh.nodes.clone(),
-        hexahedra: &mesh.hexahedra,
+        cells: mesh.elements().collect(),
         ..UnstructuredGrid::default()
     }];
     let origin = origin();
@@ -239,7 +239,7 @@ fn no_solid_and_no_instant_are_files_too() {
 #[should_panic(expected = "a cell has point 7 of 0")]
 fn a_cell_without_its_points_is_a_mistake() {
     let grid = UnstructuredGrid {
-        hexahedra: &[[7; 8]],
+        cells: vec![&[7; 8]],
         ..UnstructuredGrid::default()
     };
     vtu(&[grid], &Origin::default());

@@ -28,7 +28,7 @@ fn faces(mesh: &Mesh, set: &str) -> Faces {
 
 /// All faces of the surface.
 fn surface(mesh: &Mesh) -> Faces {
-    mesh.boundary_quads()
+    mesh.boundary()
 }
 
 #[test]
@@ -130,8 +130,8 @@ fn the_work_of_a_following_pressure_is_the_energy_that_it_supplies() {
     let volume = |model: &Model, z: &[f64]| -> f64 {
         let x = placed(model, z);
         let quads = surface(&model.solids[0].solid.mesh);
-        let of = |quad: &[usize; 4]| {
-            let [a, b, c, d] = quad.map(|n| x[n]);
+        let of = |quad: &Vec<usize>| {
+            let [a, b, c, d] = [0, 1, 2, 3].map(|i| x[quad[i]]);
             // The volume under a bilinear face.
             let normal =
                 |p: &Vector3<f64>, q: &Vector3<f64>, r: &Vector3<f64>| p.dot(&q.cross(r)) / 6.0;

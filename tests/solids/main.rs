@@ -23,3 +23,4 @@ mod slender;
 mod statics;
 mod stopped;
 mod structure;
+mod tetrahedra;

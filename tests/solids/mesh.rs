@@ -246,11 +246,11 @@ fn meshes_that_are_refused() {
         ),
         (
             |m| m.hexahedra[3][2] = m.hexahedra[3][1],
-            "hexahedron 3: found the node at (2, 0.5, 0) repeated, expected eight different nodes",
+            "hexahedron 3: found the node at (2, 0.5, 0) repeated, expected 8 different nodes",
         ),
         (
             |m| m.hexahedra[3] = m.hexahedra[2],
-            "hexahedron 3: found the nodes of hexahedron 2, expected each hexahedron once, in one region",
+            "hexahedron 3: found the nodes of hexahedron 2, expected each element once, in one region",
         ),
         (
             |m| m.nodes[0].x = f64::INFINITY,
@@ -262,7 +262,7 @@ fn meshes_that_are_refused() {
         ),
         (
             |m| m.regions.truncate(2),
-            "mesh: found 2 regions of 8 hexahedra, expected one region per hexahedron",
+            "mesh: found 2 regions of 8 elements, expected one region per element",
         ),
         (
             |m| m.sets.get_mut("x_min").unwrap().push(27),

@@ -193,8 +193,8 @@ const TABLE: [(&[&str], &str); 6] = [
         "materials are elastic and viscous; they neither yield nor break",
     ),
     (
-        &["shell", "membrane", "beam", "cloth", "tet4", "tet10"],
-        "elements are hexahedra",
+        &["shell", "membrane", "beam", "cloth"],
+        "elements are hexahedra and tetrahedra",
     ),
 ];
 

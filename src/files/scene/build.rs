@@ -47,7 +47,7 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     })?;
     let mut blocks = lists.build("solids", &scene.solids, |spec, scope| {
         let solid = solid(spec, &body_names, &materials, scope)?;
-        elements.add(solid.mesh.hexahedra.len(), scope)?;
+        elements.add(solid.mesh.element_count(), scope)?;
         Ok(solid)
     })?;
     number_sources(&mut blocks, muscles.len());
@@ -312,20 +312,7 @@ fn nearest(mesh: &Mesh, at: &Vector3<f64>) -> (usize, f64) {
 
 /// The longest edge in mm of the elements at a node.
 fn size_at(mesh: &Mesh, node: usize) -> f64 {
-    let elements = mesh.hexahedra.iter();
-    let around = elements.filter(|corners| corners.contains(&node));
-    // Edges of the lower face, of the upper one and between them.
-    let edges = |corner: usize| {
-        let next = (corner + 1) % 4;
-        let upper = [corner + 4, next + 4];
-        [[corner, next], upper, [corner, corner + 4]]
-    };
-    let length = |corners: &[usize; 8], [a, b]: [usize; 2]| {
-        (mesh.nodes[corners[a]] - mesh.nodes[corners[b]]).norm()
-    };
-    let lengths = around.flat_map(|corners| {
-        let edges = (0..4).flat_map(edges);
-        edges.map(move |edge| length(corners, edge))
-    });
+    let around = mesh.elements().filter(|nodes| nodes.contains(&node));
+    let lengths = around.flat_map(|nodes| mesh.edge_lengths(nodes));
     lengths.fold(0.0, f64::max)
 }

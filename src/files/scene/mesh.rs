@@ -5,10 +5,12 @@ use nalgebra::Vector3;
 use crate::files::json::error::{Result, SceneError};
 use crate::files::json::scope::{Scope, refuse, the_one};
 use crate::files::scene::point::vector;
-use crate::files::scene::spec_solids::{DivisionSpec, GridSpec, LayerSpec, SolidSpec};
+use crate::files::scene::spec_solids::{DivisionSpec, ElementSpec, GridSpec, LayerSpec, SolidSpec};
 use crate::mesh::error::{MeshError, MeshPlace};
 use crate::mesh::grid::Grid;
+use crate::mesh::interpolation::Cell;
 use crate::mesh::{Mesh, gmsh};
+use crate::model::system::ElementKind;
 use crate::model::{MOST_ELEMENTS, check_elements};
 
 /// Unit of a mesh file in mm where none is written: the metre.
@@ -26,7 +28,7 @@ pub(crate) fn meshed(spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed> {
         "box" cuboid |place, cuboid| {
             refuse!(if let Some(unit) = &spec.unit, scope.key("unit");
                 found unit, expected "no such key: the lengths of a box have units of their own");
-            (boxed(cuboid, place)?, place.clone())
+            (boxed(cuboid, spec.element, place)?, place.clone())
         };
         "mesh" mesh |place, path| (from_file(path, spec, scope)?, place.clone());
     );
@@ -64,7 +66,7 @@ pub(crate) fn mesh_mistake(error: &MeshError, scope: &Scope<'_>) -> SceneError {
     }
 }
 
-fn boxed(spec: &GridSpec, scope: &Scope<'_>) -> Result<Meshed> {
+fn boxed(spec: &GridSpec, element: Option<ElementSpec>, scope: &Scope<'_>) -> Result<Meshed> {
     let mut size = Vector3::zeros();
     for (axis, length) in spec.size.iter().enumerate() {
         size[axis] = scope.key("size").index(axis).positive(length)?;
@@ -93,6 +95,10 @@ fn boxed(spec: &GridSpec, scope: &Scope<'_>) -> Result<Meshed> {
     })?;
     let mut mesh = grid.mesh();
     name_regions(&mut mesh, spec, &grid.planes, &scope)?;
+    let element = ElementKind::from(element.unwrap_or_default());
+    if element.cell() == Cell::Tetrahedron {
+        mesh = mesh.in_tetrahedra();
+    }
     Ok(Meshed {
         mesh,
         planes: Some(grid.planes),

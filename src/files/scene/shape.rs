@@ -8,6 +8,7 @@ use crate::files::scene::point::{CornersSpec, Point, unit_axis, vector};
 use crate::files::scene::spec_solids::PlaneSpec;
 use crate::files::units::quantity::{Length, Quantity};
 use crate::mesh::Mesh;
+use crate::mesh::interpolation::flat_parts;
 use crate::model::components::{ContactShape, ContactSide};
 use crate::model::system::{Attachment, Solid};
 use nalgebra::Vector3;
@@ -231,13 +232,21 @@ impl NodesShapeSpec {
     }
 }
 
-/// The part of each of some nodes in the surface between them, a quarter of each face; equal parts where they make no face.
+/// The part of each of some nodes in the surface between them, an equal share of each flat face with each of its corners; equal parts where they
+/// make no face.
 fn parts_of_surface(mesh: &Mesh, nodes: &[usize]) -> Vec<f64> {
     let mut areas = vec![0.0; mesh.nodes.len()];
-    for face in mesh.faces_of(nodes) {
+    for face in mesh
+        .faces_of(nodes)
+        .iter()
+        .flat_map(|face| flat_parts(face))
+    {
         let [a, b, c, d] = face.map(|node| mesh.nodes[node]);
         let area = 0.5 * (c - a).cross(&(d - b)).norm();
-        face.iter().for_each(|&node| areas[node] += 0.25 * area);
+        let corners = if face[2] == face[3] { 3 } else { 4 };
+        for &node in &face[..corners] {
+            areas[node] += area / corners as f64;
+        }
     }
     let whole: f64 = areas.iter().sum();
     let part = |&node: &usize| match whole > 0.0 {

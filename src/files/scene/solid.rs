@@ -12,7 +12,7 @@ use crate::files::scene::spec_solids::{
 };
 use crate::math::Matrix;
 use crate::mesh::Mesh;
-use crate::model::system::{Glue, Material, Solid, Support};
+use crate::model::system::{ElementKind, Glue, Material, Solid, Support};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -38,6 +38,12 @@ pub(crate) fn solid(
         found format!("{name:?}, which has no electric term, in a block with electrodes"),
         expected ELECTRIC_KEYS);
     let Meshed { mesh, .. } = meshed;
+    let element = spec
+        .element
+        .map_or(ElementKind::of_mesh(&mesh), ElementKind::from);
+    refuse!(if element.cell() != mesh.cell(), scope.key("element");
+        found format!("a kind of {}", element.cell().name()),
+        expected format!("one of {}: the mesh consists of these", mesh.cell().name()));
     let (glued, grounded) = glued(spec, &mesh, bodies, &scope.key("glued"))?;
     let mut supports = supports(spec, &mesh, &scope.key("fixed"))?;
     supports.extend(grounded);
@@ -57,7 +63,7 @@ pub(crate) fn solid(
         name: spec.name.clone(),
         mesh,
         materials: of_region,
-        element: spec.element.unwrap_or_default().into(),
+        element,
         electrodes,
         supports,
         glued,

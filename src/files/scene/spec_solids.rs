@@ -15,7 +15,7 @@ use crate::files::units::quantity::{
 use crate::model::system::{Circuit, ElementKind};
 
 objects! {
-    /// An elastic block of hexahedra: a `box` or a `mesh`, of one `material` or of `materials` by region.
+    /// An elastic block of finite elements: a `box` or a `mesh`, of one `material` or of `materials` by region.
     ///
     /// Faces are `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max` of a box, and physical groups of a mesh.
     pub struct SolidSpec {
@@ -32,7 +32,7 @@ objects! {
         pub mesh: Option<String>,
         /// Length of a unit of the Gmsh file, SI unit m; 1 m where not written.
         pub unit: Option<Quantity<Length>>,
-        /// Kind of hexahedron; `hex8` where not written.
+        /// Kind of its elements; `hex8` where not written, `tet10` of a mesh of tetrahedra.
         pub element: Option<ElementSpec>,
         /// Electrodes; without any the block has no potential.
         pub electrodes?: Vec<ElectrodeSpec>,
@@ -68,17 +68,21 @@ objects! {
         pub z: Option<f64>,
     }
 
-    /// Kind of hexahedron: its treatment of volume.
+    /// Kind of element: its interpolation, and its treatment of volume.
     #[derive(Default)]
     pub enum ElementSpec: ElementKind {
-        /// Trilinear.
+        /// Trilinear hexahedron.
         #[default]
         Hex8,
-        /// Trilinear with one dilatation an element, for materials that hardly change their volume.
+        /// The same with one dilatation an element, for materials that hardly change their volume.
         Hex8Q1p0 = Hex8Q1P0,
+        /// Quadratic tetrahedron.
+        Tet10,
+        /// The same with one dilatation an element.
+        Tet10P2p0 = Tet10P2P0,
     }
 
-    /// A box cut into hexahedra.
+    /// A box cut into hexahedra, each of them into six tetrahedra where the kind of its elements is one of these.
     pub struct GridSpec {
         /// Lower corner, SI unit m; the origin where not written.
         pub corner: Option<Point>,

@@ -9,7 +9,7 @@ use std::collections::BTreeMap;
 use std::iter::Enumerate;
 use std::str::{FromStr, SplitWhitespace};
 
-/// Name of the region of hexahedra that belong to no physical volume.
+/// Name of the region of elements that belong to no physical volume.
 pub const UNGROUPED: &str = "ungrouped";
 
 /// Number of a physical group by the dimension of its elements; zero is no group.
@@ -20,8 +20,10 @@ pub(super) struct Element {
     pub(super) number: u64,
     /// Number of its line in the file.
     pub(super) line: usize,
-    /// 0 point, 1 line, 2 quadrangle, 3 hexahedron.
+    /// 0 point, 1 line, 2 face, 3 volume.
     pub(super) dimension: usize,
+    /// Its type.
+    pub(super) kind: usize,
     /// Numbers of its nodes in the file.
     pub(super) nodes: Vec<u64>,
     /// Numbers of the physical groups it belongs to.
@@ -196,6 +198,14 @@ pub(super) fn quoted(text: &str) -> String {
     }
 }
 
+/// Types of volumes that are of use.
+pub(super) const HEXAHEDRON: usize = 5;
+pub(super) const LINEAR_TETRAHEDRON: usize = 4;
+pub(super) const TETRAHEDRON: usize = 11;
+/// What is expected of them.
+pub(super) const VOLUMES: &str =
+    "8-node hexahedra (type 5), or tetrahedra of 4 or 10 nodes (types 4 and 11)";
+
 const KINDS: [&str; 19] = [
     "2-node line",
     "3-node triangle",
@@ -223,17 +233,27 @@ pub(super) fn shape(kind: usize, line: &Line<'_>) -> Result<(usize, usize), Mesh
     match kind {
         15 => Ok((0, 1)),
         1 => Ok((1, 2)),
+        8 => Ok((1, 3)),
+        2 => Ok((2, 3)),
+        9 => Ok((2, 6)),
         3 => Ok((2, 4)),
-        5 => Ok((3, 8)),
+        LINEAR_TETRAHEDRON => Ok((3, 4)),
+        TETRAHEDRON => Ok((3, 10)),
+        HEXAHEDRON => Ok((3, 8)),
         _ => {
-            let name = kind.checked_sub(1).and_then(|index| KINDS.get(index));
-            let found = match name {
-                Some(name) => format!("a {name} (type {kind})"),
-                None => format!("an element of type {kind}"),
-            };
-            let expected = "8-node hexahedra (type 5) bounded by 4-node quadrangles (type 3), 2-node lines (type 1) and \
-                 points (type 15): mesh with transfinite or extruded, recombined volumes of first order";
-            Err(line.wrong(found, expected))
+            let expected = format!(
+                "{VOLUMES}, bounded by quadrangles (type 3), triangles (types 2 and 9), lines (types 1 and 8) and points \
+                 (type 15): mesh with transfinite or extruded, recombined volumes of first order, or with tetrahedra"
+            );
+            Err(line.wrong(named(kind), expected))
         }
+    }
+}
+
+/// An element of a type, for messages.
+pub(super) fn named(kind: usize) -> String {
+    match kind.checked_sub(1).and_then(|index| KINDS.get(index)) {
+        Some(name) => format!("a {name} (type {kind})"),
+        None => format!("an element of type {kind}"),
     }
 }

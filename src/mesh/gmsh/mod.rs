@@ -1,4 +1,4 @@
-//! Meshes from Gmsh: `.msh` files of format 2.2 and 4.1 in ASCII.
+//! Meshes from Gmsh: `.msh` files of format 2.2 and 4.1, in ASCII or binary.
 //!
 //! - **Reading** turns the lines of either format into the same contents: nodes, elements and groups by their
 //!   numbers in the file.
@@ -8,6 +8,7 @@
 //! Nodes and elements are in the order of their numbers in the file, so that both formats of one mesh read equal.
 
 mod assemble;
+mod binary;
 mod contents;
 mod version2;
 mod version4;
@@ -26,16 +27,16 @@ const SECTION: &str = "a section such as $Nodes";
 
 /// Reads a file with lengths in `unit` mm; the mesh is [checked](Mesh::check).
 ///
-/// Physical volumes become regions in the order of their numbers, hexahedra of none become the region [`UNGROUPED`], the
+/// Physical volumes become regions in the order of their numbers, elements of none become the region [`UNGROUPED`], the
 /// last one. Physical surfaces, curves and points become sets; what has no name is called `volume_7`, `surface_7`,
-/// `curve_7` or `point_7` by its number, and groups of one name are one set. Nodes that no hexahedron uses are dropped.
+/// `curve_7` or `point_7` by its number, and groups of one name are one set. Nodes that no volume uses are dropped. Linear tetrahedra get a node in the middle of each edge, which is in the sets of both ends.
 ///
 /// # Panics
 ///
 /// If the unit is not a positive number.
 ///
 /// # Errors
-/// The file cannot be read, or is no mesh of hexahedra that can be computed with.
+/// The file cannot be read, or is no mesh of hexahedra or tetrahedra that can be computed with.
 pub fn read(path: &Path, unit: f64) -> Result<Mesh, MeshError> {
     let file = path.display().to_string();
     match std::fs::read(path) {
@@ -56,12 +57,18 @@ pub fn parse(bytes: &[u8], file: &str, unit: f64) -> Result<Mesh, MeshError> {
         unit > 0.0 && unit.is_finite(),
         "a unit of {unit} mm is no length"
     );
-    // Names of other encodings lose letters; a binary file is refused by its first lines.
+    // Names of other encodings lose letters.
     let text = String::from_utf8_lossy(bytes);
     let mut lines = Lines::new(file, &text);
-    let format = format(&mut lines)?;
-    let contents = contents(&mut lines, format)?;
-    contents.assemble(file, unit)
+    let (format, is_binary) = format(&mut lines)?;
+    if !is_binary {
+        return contents(&mut lines, format)?.assemble(file, unit);
+    }
+    let text = binary::as_text(bytes, file, format)?;
+    let file = format!("{file} as text");
+    let mut lines = Lines::new(&file, &text);
+    self::format(&mut lines)?;
+    contents(&mut lines, format)?.assemble(&file, unit)
 }
 
 /// Layout of nodes and elements.
@@ -73,7 +80,8 @@ enum Format {
     Four,
 }
 
-fn format(lines: &mut Lines<'_>) -> Result<Format, MeshError> {
+/// The format, and true if the file is binary.
+fn format(lines: &mut Lines<'_>) -> Result<(Format, bool), MeshError> {
     let first = lines.next("$MeshFormat")?;
     match first.text {
         "$MeshFormat" => {}
@@ -81,7 +89,8 @@ fn format(lines: &mut Lines<'_>) -> Result<Format, MeshError> {
         other => return Err(first.wrong(quoted(other), "$MeshFormat, the head of a .msh file")),
     }
     let line = lines.next("the version of the format")?;
-    let mut words = line.words("the version, 0 for ASCII, and the size of a number: 4.1 0 8");
+    let mut words =
+        line.words("the version, 0 for ASCII or 1 for binary, and the size of a number: 4.1 0 8");
     let version = words.word()?;
     let binary = words.word()?;
     words.word()?;
@@ -91,11 +100,12 @@ fn format(lines: &mut Lines<'_>) -> Result<Format, MeshError> {
         "4.1" => Format::Four,
         other => return Err(line.wrong(format!("format {other}"), FORMATS)),
     };
-    refuse!(if binary != "0", line;
-        found "a binary file",
-        expected "an ASCII file: save with Mesh.Binary = 0 (gmsh -save … -setnumber Mesh.Binary 0)");
-    lines.end("$EndMeshFormat")?;
-    Ok(format)
+    match binary {
+        "0" => lines.end("$EndMeshFormat")?,
+        "1" => return Ok((format, true)),
+        other => return Err(line.wrong(quoted(other), "0 for ASCII or 1 for binary")),
+    }
+    Ok((format, false))
 }
 
 fn contents(lines: &mut Lines<'_>, format: Format) -> Result<Contents, MeshError> {

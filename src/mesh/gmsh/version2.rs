@@ -31,7 +31,8 @@ pub(super) fn elements(lines: &mut Lines<'_>) -> Result<Vec<Element>, MeshError>
         let line = lines.record(shape)?;
         let mut words = line.words(shape);
         let number = words.number()?;
-        let (dimension, corners) = super::contents::shape(words.number()?, &line)?;
+        let kind = words.number()?;
+        let (dimension, corners) = super::contents::shape(kind, &line)?;
         let tags: usize = words.number()?;
         let mut groups = Vec::new();
         for tag in 0..tags {
@@ -47,6 +48,7 @@ pub(super) fn elements(lines: &mut Lines<'_>) -> Result<Vec<Element>, MeshError>
             number,
             line: line.number,
             dimension,
+            kind,
             nodes,
             groups,
         });

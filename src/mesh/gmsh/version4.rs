@@ -93,7 +93,8 @@ pub(super) fn elements(
         let line = lines.record(shape)?;
         let mut words = line.words(shape);
         let entity: (usize, i64) = (words.number()?, words.number()?);
-        let (dimension, corners) = super::contents::shape(words.number()?, &line)?;
+        let kind = words.number()?;
+        let (dimension, corners) = super::contents::shape(kind, &line)?;
         let count: usize = words.number()?;
         words.end()?;
         refuse!(if entity.0 != dimension, line;
@@ -118,6 +119,7 @@ pub(super) fn elements(
                 number,
                 line: line.number,
                 dimension,
+                kind,
                 nodes,
                 groups: groups.to_vec(),
             });

@@ -2,6 +2,7 @@
 //! sought.
 
 use crate::math::Vector;
+pub use crate::mesh::geometry::Faces;
 use crate::model::system::bodies::Attachment;
 
 /// A load on the system.
@@ -57,12 +58,9 @@ pub enum BlockLoad {
     BodyForce(Vector),
 }
 
-/// Faces of elements by their nodes, counter-clockwise seen from outside.
-pub type Faces = Vec<[usize; 4]>;
-
 impl BlockLoad {
     /// Faces on which it acts; none of a body force.
-    pub fn faces(&self) -> &[[usize; 4]] {
+    pub fn faces(&self) -> &[Vec<usize>] {
         match self {
             Self::Traction(faces, _) | Self::Pressure { faces, .. } | Self::Charge(faces) => faces,
             Self::BodyForce(_) => &[],

@@ -100,11 +100,11 @@ impl NodeGrids {
             });
             return;
         }
-        let elements = solid.mesh.hexahedra.iter();
+        let elements = solid.mesh.elements();
         self.meshes.push(NodeMesh {
             places: solid.mesh.nodes.iter().map(|&node| node.into()).collect(),
             elements: elements
-                .map(|nodes| nodes.map(|node| node as u32))
+                .map(|nodes| nodes.iter().map(|&node| node as u32).collect())
                 .collect(),
             unknowns,
             shortest_edge: solid.mesh.shortest_edge(),

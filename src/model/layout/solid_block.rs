@@ -1,14 +1,15 @@
 //! An elastic block in the model: vectors and potentials of its nodes, laws of its elements, charges of its electrodes.
 
 use crate::element::{
-    Dielectric, Elastomer, ElementEnergy, ElementGeometry, Fields, IsochoricLaw, Local, NodeState,
-    Passive, Volume,
+    Dielectric, Elastomer, ElementEnergy, ElementGeometry, Fields, Inverted, IsochoricLaw, Local,
+    NodeState, Passive, Viscosity, Volume,
 };
 use crate::energy::NeoHooke;
 use crate::functional::ScalarArg;
 use crate::math::{Matrix, Vector};
+use crate::mesh::interpolation::{Cell, Element, Parent};
 use crate::model::constants::constant::{Constant, MaterialConstant};
-use crate::model::system::{Electrode, ElementKind, Material, Potential, Solid};
+use crate::model::system::{Electrode, Material, Potential, Solid};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -24,11 +25,60 @@ pub struct SolidBlock {
     /// Part of the scene that it is.
     pub owner: Owner,
     /// Geometry of each element.
-    pub shapes: Vec<Arc<ElementGeometry>>,
+    pub shapes: Vec<Shape>,
     /// For each element, true if a field reaches it.
     pub is_dielectric: Vec<bool>,
     /// True if all nodes rest on the ground, and there is no field.
     pub is_immobile: bool,
+}
+
+/// Geometry of an element by its kind.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// Of a hexahedron.
+    Hexahedron(Arc<ElementGeometry<8>>),
+    /// Of a tetrahedron.
+    Tetrahedron(Arc<ElementGeometry<10>>),
+}
+
+/// Does the same with the geometry of an element of any kind, and with arrays of as many nodes.
+macro_rules! of_shape {
+    ($of:expr, $shape:ident => $does:expr) => {
+        match $of {
+            crate::model::layout::solid_block::Shape::Hexahedron($shape) => $does,
+            crate::model::layout::solid_block::Shape::Tetrahedron($shape) => $does,
+        }
+    };
+}
+pub(crate) use of_shape;
+
+impl Shape {
+    /// The element with these nodes, of places in mm.
+    ///
+    /// # Errors
+    /// It is inverted at a Gauss point.
+    pub(crate) fn new(nodes: &[usize], place: impl Fn(usize) -> Vector) -> Result<Self, Inverted> {
+        Ok(match Cell::of(nodes) {
+            Cell::Hexahedron => Self::Hexahedron(geometry(nodes, place)?),
+            Cell::Tetrahedron => Self::Tetrahedron(geometry(nodes, place)?),
+        })
+    }
+
+    /// Weights of the Gauss points in mm³.
+    pub fn weights(&self) -> &[f64; 8] {
+        of_shape!(self, shape => shape.weights())
+    }
+}
+
+fn geometry<const NODES: usize>(
+    nodes: &[usize],
+    place: impl Fn(usize) -> Vector,
+) -> Result<Arc<ElementGeometry<NODES>>, Inverted>
+where
+    Parent<NODES>: Element<NODES>,
+{
+    let places = std::array::from_fn(|i| place(nodes[i]));
+    ElementGeometry::new(&places).map(Arc::new)
 }
 
 /// Part of a scene that a block is.
@@ -65,18 +115,46 @@ impl SolidBlock {
     }
 
     /// Vectors of the nodes of an element.
-    pub fn nodes(&self, element: usize) -> [usize; 8] {
-        self.solid.mesh.hexahedra[element].map(|node| self.vectors[node])
+    pub fn nodes<const NODES: usize>(&self, element: usize) -> [usize; NODES] {
+        let nodes = self.solid.mesh.element(element);
+        std::array::from_fn(|i| self.vectors[nodes[i]])
+    }
+
+    /// What lists have of the nodes of an element.
+    fn of_nodes<T: Copy, const NODES: usize>(&self, element: usize, of: &[T]) -> [T; NODES] {
+        let nodes = self.solid.mesh.element(element);
+        std::array::from_fn(|i| of[nodes[i]])
+    }
+
+    /// Places in mm of the nodes of an element without stress.
+    pub(crate) fn unstretched<const NODES: usize>(&self, element: usize) -> [Vector; NODES] {
+        let nodes = self.solid.mesh.element(element);
+        std::array::from_fn(|i| self.solid.unstretched(nodes[i]))
+    }
+
+    /// Integrals ∫ N_i dV of the shape functions of an element in mm³.
+    fn loads(&self, element: usize) -> Vec<f64> {
+        fn of<const NODES: usize>(
+            of: &SolidBlock,
+            element: usize,
+            _: &ElementGeometry<NODES>,
+        ) -> Vec<f64>
+        where
+            Parent<NODES>: Element<NODES>,
+        {
+            ElementGeometry::loads(&of.unstretched::<NODES>(element)).to_vec()
+        }
+        of_shape!(&self.shapes[element], shape => of(self, element, shape))
     }
 
     /// The integral of the shape function of each node in mm³ times a density of the element, over elements that have one.
     pub(crate) fn integrals(&self, density: impl Fn(usize) -> Option<f64>) -> BTreeMap<usize, f64> {
         let mut sums = BTreeMap::new();
-        for (e, nodes) in self.solid.mesh.hexahedra.iter().enumerate() {
+        for (e, nodes) in self.solid.mesh.elements().enumerate() {
             let Some(density) = density(e) else {
                 continue;
             };
-            for (&node, part) in nodes.iter().zip(self.shapes[e].loads()) {
+            for (&node, part) in nodes.iter().zip(self.loads(e)) {
                 *sums.entry(node).or_default() += density * part;
             }
         }
@@ -84,21 +162,27 @@ impl SolidBlock {
     }
 
     /// Gradients of the shape functions at the centre of an element; `None` where it is inverted there.
-    pub(crate) fn central_gradients(&self, element: usize) -> Option<[Vector; 8]> {
-        let nodes = self.solid.mesh.hexahedra[element];
-        ElementGeometry::central_gradients(&nodes.map(|node| self.solid.unstretched(node)))
+    pub(crate) fn central_gradients<const NODES: usize>(
+        &self,
+        element: usize,
+    ) -> Option<[Vector; NODES]>
+    where
+        Parent<NODES>: Element<NODES>,
+    {
+        ElementGeometry::central_gradients(&self.unstretched(element))
     }
 
     /// Deformation gradient at a Gauss point of an element at vectors x.
     pub(crate) fn deformation(&self, element: usize, point: usize, x: &[Vector]) -> Matrix {
-        let nodes = self.nodes(element).map(|v| x[v]);
-        self.shapes[element].gradient_of(&nodes, point)
+        of_shape!(&self.shapes[element], shape => {
+            shape.gradient_of(&self.nodes(element).map(|v| x[v]), point)
+        })
     }
 
     /// Terminals of the nodes of a dielectric element.
-    pub fn terminals(&self, element: usize) -> [ScalarArg; 8] {
-        self.solid.mesh.hexahedra[element]
-            .map(|node| self.terminals[node].expect("a dielectric element has potentials"))
+    pub fn terminals<const NODES: usize>(&self, element: usize) -> [ScalarArg; NODES] {
+        let terminals = self.of_nodes(element, &self.terminals);
+        terminals.map(|terminal| terminal.expect("a dielectric element has potentials"))
     }
 
     /// The law of elasticity of an element other than the neo-Hookean one.
@@ -110,9 +194,10 @@ impl SolidBlock {
     ///
     /// # Panics
     /// It is inverted there; an element of a checked block is not.
-    pub(crate) fn reference_shape(&self, element: usize) -> ElementGeometry {
-        let nodes = self.solid.mesh.hexahedra[element].map(|n| self.solid.mesh.nodes[n]);
-        ElementGeometry::new(&nodes).expect("stretches of a prestretch are positive")
+    pub(crate) fn reference_shape(&self, element: usize) -> Shape {
+        let mesh = &self.solid.mesh;
+        let shape = Shape::new(mesh.element(element), |node| mesh.nodes[node]);
+        shape.expect("stretches of a prestretch are positive")
     }
 
     /// The law of a branch without stress in the reference configuration: μ₁/2 (Ī₁ − 3) of a volume that is free of stress, on the
@@ -135,9 +220,9 @@ impl SolidBlock {
         Elastomer {
             shear_modulus: material.shear_modulus,
             lame_lambda: material.lame_lambda.unwrap_or(0.0),
-            volume: match self.solid.element {
-                ElementKind::Hex8 => Volume::Pointwise,
-                ElementKind::Hex8Q1P0 => Volume::Mean,
+            volume: match self.solid.element.has_mean_dilatation() {
+                false => Volume::Pointwise,
+                true => Volume::Mean,
             },
             field: Passive,
             law: NeoHooke,
@@ -164,22 +249,40 @@ impl SolidBlock {
 
     /// Fields of an element without its viscosity, with the nodes at `places` in mm under `potentials` in V.
     pub fn fields(&self, element: usize, places: &[Vector], potentials: &[f64]) -> Fields {
-        let nodes = self.solid.mesh.hexahedra[element];
-        let (shape, x) = (&self.shapes[element], nodes.map(|n| places[n]));
-        if self.is_dielectric[element] {
-            let phi = nodes.map(|n| potentials[n]);
-            let law = self.dielectric(element);
-            match self.isochoric(element) {
-                None => law.fields(shape, &x, &phi),
-                Some(isochoric) => law.by(isochoric).fields(shape, &x, &phi),
+        of_shape!(&self.shapes[element], shape => {
+            let x = self.of_nodes(element, places);
+            let isochoric = self.isochoric(element);
+            if self.is_dielectric[element] {
+                let phi = self.of_nodes(element, potentials);
+                let law = self.dielectric(element);
+                match isochoric {
+                    None => law.fields(shape, &x, &phi),
+                    Some(isochoric) => law.by(isochoric).fields(shape, &x, &phi),
+                }
+            } else {
+                let law = self.passive(element);
+                match isochoric {
+                    None => law.fields(shape, &x, &()),
+                    Some(isochoric) => law.by(isochoric).fields(shape, &x, &()),
+                }
             }
-        } else {
-            let law = self.passive(element);
-            match self.isochoric(element) {
-                None => law.fields(shape, &x, &()),
-                Some(isochoric) => law.by(isochoric).fields(shape, &x, &()),
-            }
-        }
+        })
+    }
+
+    /// Mean viscous stress in MPa of an element with the nodes at `places` in mm at `velocities` in mm/ms, where its material is viscous.
+    pub fn viscous_stress(
+        &self,
+        element: usize,
+        places: &[Vector],
+        velocities: &[Vector],
+    ) -> Option<Matrix> {
+        let law = Viscosity {
+            viscosity: self.material(element).viscosity?,
+        };
+        Some(of_shape!(&self.shapes[element], shape => {
+            let [x, v] = [places, velocities].map(|of| self.of_nodes(element, of));
+            law.stress(shape, &x, &v)
+        }))
     }
 
     /// Block and electrode of the electrodes that no voltage drives.
@@ -201,15 +304,17 @@ impl SolidBlock {
         }
         let (places, potentials) = (self.places(x), self.potentials(scalars));
         let mut charges = vec![0.0; places.len()];
-        let mut local = Local::default();
-        for (e, nodes) in self.solid.mesh.hexahedra.iter().enumerate() {
+        for (e, nodes) in self.solid.mesh.elements().enumerate() {
             if self.is_dielectric[e] {
-                let (at, phi) = (nodes.map(|n| places[n]), nodes.map(|n| potentials[n]));
                 let law = self.dielectric(e);
-                law.gradient(&NodeState::new(&self.shapes[e], &at, &phi), &mut local);
-                for (&node, charge) in nodes.iter().zip(&local.electric.charges) {
-                    charges[node] -= charge;
-                }
+                of_shape!(&self.shapes[e], shape => {
+                    let (at, phi) = (self.of_nodes(e, &places), self.of_nodes(e, &potentials));
+                    let mut local = Local::default();
+                    law.gradient(&NodeState::new(shape, &at, &phi), &mut local);
+                    for (&node, charge) in nodes.iter().zip(&local.electric.charges) {
+                        charges[node] -= charge;
+                    }
+                });
             }
         }
         let sum = |e: &&Electrode| -> f64 { e.nodes.iter().map(|&n| charges[n]).sum() };

@@ -4,17 +4,17 @@
 //! coordinates. Only nodes that an electric field reaches have a potential.
 
 use crate::coordinates::NodePlace;
-use crate::element::{ElementGeometry, Inverted};
+use crate::element::Inverted;
 use crate::functional::ScalarArg;
 use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::model::analysis::{Analysis, ModelError};
+use crate::model::layout::solid_block::Shape;
 use crate::model::layout::solid_block::{Owner, SolidBlock};
 use crate::model::layout::variables::{Variable, Variables};
 use crate::model::system::electrode_circuits::ElectrodeCircuit;
 use crate::model::system::{Glue, Material, Potential, Solid, System};
 use crate::model::terms::field_extent;
 use std::collections::{BTreeMap, HashMap};
-use std::sync::Arc;
 
 /// Blocks before they become terms: nodes and ties of all of them.
 #[derive(Debug, Default)]
@@ -160,7 +160,7 @@ fn terminals(
     variables: &mut Variables,
 ) -> (Vec<Option<ScalarArg>>, BTreeMap<usize, usize>) {
     let mut wires = vec![None; solid.mesh.nodes.len()];
-    let elements = solid.mesh.hexahedra.iter().zip(is_dielectric);
+    let elements = solid.mesh.elements().zip(is_dielectric);
     for (nodes, _) in elements.filter(|(_, is)| **is) {
         for &node in nodes {
             wires[node] = Some(Connection::Free);
@@ -221,7 +221,7 @@ fn terminals(
 }
 
 /// √(μ ε) V^⅔ in mC of the volume V of a block: a charge whose field balances the elasticity.
-fn unit_of_charge(solid: &Solid, shapes: &[Arc<ElementGeometry>]) -> f64 {
+fn unit_of_charge(solid: &Solid, shapes: &[Shape]) -> f64 {
     let volumes = shapes.iter().flat_map(|shape| shape.weights());
     let area = volumes.sum::<f64>().powf(2.0 / 3.0);
     let of = |m: &Material| {
@@ -246,15 +246,13 @@ fn unit(solids: &[Solid]) -> f64 {
     if largest > 0.0 { largest } else { 1.0 }
 }
 
-fn shapes(solid: &Solid) -> Result<Vec<Arc<ElementGeometry>>, ModelError> {
-    let shape = |(element, nodes): (usize, &[usize; 8])| {
-        let shape = ElementGeometry::new(&nodes.map(|n| solid.unstretched(n)));
-        shape
-            .map(Arc::new)
-            .map_err(|Inverted { .. }| ModelError::Inverted {
-                solid: solid.name.clone(),
-                element,
-            })
+fn shapes(solid: &Solid) -> Result<Vec<Shape>, ModelError> {
+    let shape = |(element, nodes): (usize, &[usize])| {
+        let shape = Shape::new(nodes, |node| solid.unstretched(node));
+        shape.map_err(|Inverted { .. }| ModelError::Inverted {
+            solid: solid.name.clone(),
+            element,
+        })
     };
-    solid.mesh.hexahedra.iter().enumerate().map(shape).collect()
+    solid.mesh.elements().enumerate().map(shape).collect()
 }

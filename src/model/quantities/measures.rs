@@ -15,6 +15,7 @@ use crate::model::components::muscle_constants::{MuscleConstants, charge_field};
 use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::construction::Construction;
+use crate::model::layout::solid_block::of_shape;
 use crate::model::layout::variables::Role;
 use crate::model::quantities::quantity::Quantity;
 use crate::model::quantities::what::{At, FieldPlace, Of, Region, What};
@@ -310,18 +311,20 @@ impl<'k> Reading<'k, '_> {
         if !block.is_dielectric[element] {
             return None;
         }
-        let gradients = match point {
-            Some(point) => block.shapes[element].gradients_at(point),
-            None => block.central_gradients(element)?,
-        };
         let limit = self.quantity.unit;
-        let field = ElementField {
-            point: FieldPoint { gradients, limit },
-            nodes: block.nodes(element),
-            terminals: block.terminals(element),
-            at: self.quantity.at.stencil(),
-        };
-        Some(alone(field))
+        of_shape!(&block.shapes[element], shape => {
+            let gradients = match point {
+                Some(point) => shape.gradients_at(point),
+                None => block.central_gradients(element)?,
+            };
+            let field = ElementField {
+                point: FieldPoint { gradients, limit },
+                nodes: block.nodes(element),
+                terminals: block.terminals(element),
+                at: self.quantity.at.stencil(),
+            };
+            Some(alone(field))
+        })
     }
 
     /// Squared field of a lumped muscle over the one of the unit.

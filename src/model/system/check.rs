@@ -3,6 +3,7 @@
 use crate::math::{
     DIRECTION, Fault, Key, Vector, WHOLE, not_negative, positive, refuse, shortest, unique,
 };
+use crate::mesh::interpolation::Cell;
 use crate::model::components::component::Component;
 use crate::model::components::{BlockLoad, Load, LoadPlace};
 use crate::model::system::circuit::Circuit;
@@ -345,6 +346,8 @@ impl Muscle {
         refuse!(if self.section_inertia, Key("section_inertia");
             found "\"section_inertia\" of a muscle of finite elements",
             expected "no such key, as all inertia of finite elements counts");
+        refuse!(unless mesh.element.cell() == Cell::Hexahedron, Key("element");
+            found "a kind of tetrahedron", expected "one of hexahedron, into which a muscle is cut");
         check_elements(mesh.elements).map_err(|fault| fault.under("elements"))?;
         let (along, layers) = (mesh.elements[2], mesh.layers);
         refuse!(unless layers > 0 && along.is_multiple_of(layers), Key("layers");
@@ -388,6 +391,10 @@ impl Solid {
     fn check(&self) -> Checked {
         let whole = |error| Fault::new("", error, "a mesh that can be computed with");
         self.mesh.check().map_err(whole)?;
+        let (kind, cell) = (self.element, self.mesh.cell());
+        refuse!(unless kind.cell() == cell, Key("element");
+            found format!("a kind of {}", kind.cell().name()),
+            expected format!("one of {}: the mesh consists of these", cell.name()));
         let of_electrodes = self.electrodes.iter().map(|e| &e.nodes);
         let mut sets = of_electrodes.chain(self.supports.iter().map(|s| &s.nodes));
         let count = self.mesh.nodes.len();

@@ -10,6 +10,7 @@ pub(super) mod prestretch;
 
 use crate::math::Signal;
 use crate::mesh::Mesh;
+use crate::mesh::interpolation::Cell;
 use crate::model::components::{BlockLoad, Components, Load, LoadPlace};
 use nalgebra::{Matrix3, Vector3};
 
@@ -88,7 +89,7 @@ impl System {
     pub fn field_points(&self, block: usize, region: Option<usize>) -> Vec<(usize, Option<usize>)> {
         let elements = match self.muscle_of_block(block) {
             Some(muscle) => muscle.fidelity.elements(),
-            None => self.solids[block].mesh.hexahedra.len(),
+            None => self.solids[block].mesh.element_count(),
         };
         let is_in = |e: &usize| region.is_none_or(|r| self.solids[block].mesh.regions[*e] == r);
         let points = || std::iter::once(None).chain((0..8).map(Some));
@@ -101,7 +102,7 @@ impl System {
     /// Number of finite elements of muscles and blocks.
     pub fn elements(&self) -> usize {
         let of_muscles = self.muscles.iter().map(|muscle| muscle.fidelity.elements());
-        let of_blocks = self.solids.iter().map(|solid| solid.mesh.hexahedra.len());
+        let of_blocks = self.solids.iter().map(|solid| solid.mesh.element_count());
         of_muscles.chain(of_blocks).sum()
     }
 
@@ -257,14 +258,14 @@ pub struct Discretisation {
     /// Layers of the model along the span, a divisor of the elements there; each stands for many layers of the muscle
     /// under the same field.
     pub layers: usize,
-    /// Kind of hexahedron.
+    /// Kind of its elements.
     pub element: ElementKind,
     /// Direction of the first side of the cross-section in the ground frame, of which the part across the span counts; `None` for the direction
     /// that is perpendicular to the span and to the first ground axis within 0.6 of its cosine.
     pub first_side: Option<Vector3<f64>>,
 }
 
-/// An elastic block of hexahedra.
+/// An elastic block of finite elements.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid {
     /// Unique name.
@@ -273,7 +274,7 @@ pub struct Solid {
     pub mesh: Mesh,
     /// Material of each region of the mesh.
     pub materials: Vec<Material>,
-    /// Kind of hexahedron.
+    /// Kind of its elements.
     pub element: ElementKind,
     /// Electrodes; without any the block has no potential.
     pub electrodes: Vec<Electrode>,
@@ -287,14 +288,41 @@ pub struct Solid {
     pub prestretch: Option<Matrix3<f64>>,
 }
 
-/// Kind of hexahedron: its treatment of volume.
+/// Kind of element: its interpolation, and its treatment of volume.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ElementKind {
-    /// Trilinear with 2 × 2 × 2 Gauss points.
+    /// Trilinear hexahedron with 2 × 2 × 2 Gauss points.
     #[default]
     Hex8,
     /// The same with one dilatation an element (Q1P0), against volumetric locking.
     Hex8Q1P0,
+    /// Quadratic tetrahedron with eight Gauss points.
+    Tet10,
+    /// The same with one dilatation an element (P2P0), against volumetric locking.
+    Tet10P2P0,
+}
+
+impl ElementKind {
+    /// The kind of the elements of a mesh where none is named.
+    pub fn of_mesh(mesh: &Mesh) -> Self {
+        match mesh.cell() {
+            Cell::Hexahedron => Self::Hex8,
+            Cell::Tetrahedron => Self::Tet10,
+        }
+    }
+
+    /// Its interpolation.
+    pub fn cell(self) -> Cell {
+        match self {
+            Self::Hex8 | Self::Hex8Q1P0 => Cell::Hexahedron,
+            Self::Tet10 | Self::Tet10P2P0 => Cell::Tetrahedron,
+        }
+    }
+
+    /// Returns true if its volumetric energy is that of its mean dilatation.
+    pub fn has_mean_dilatation(self) -> bool {
+        matches!(self, Self::Hex8Q1P0 | Self::Tet10P2P0)
+    }
 }
 
 /// Nodes of one potential.

@@ -1,21 +1,21 @@
 //! Terms of elastic blocks: masses and weights, elements by kind, and Maxwell branches.
 
 use crate::coordinates::Configuration;
-use crate::element::{ElementLaw, MaxwellSpring, Viscosity, ViscousStrains};
+use crate::element::{ElementGeometry, ElementLaw, MaxwellSpring, Viscosity, ViscousStrains};
 use crate::energy::{KineticCoupling, MaxwellDamper, NeoHooke};
 use crate::functional::{Element, FiniteElement, Mass, MaxwellElement, POINTS, ViscousElement};
 use crate::kinematics::MaterialVector;
 use crate::math::Matrix;
+use crate::mesh::interpolation::{Element as Interpolated, Parent};
 use crate::model::constants::constant::{Constant, MaterialConstant};
 use crate::model::layout::internal::Internals;
-use crate::model::layout::solid_block::SolidBlock;
+use crate::model::layout::solid_block::{SolidBlock, of_shape};
 use crate::model::layout::solids::Solids;
 use crate::model::model::Model;
 use crate::model::system::maxwell::{MaxwellBranch, Response};
 use crate::model::terms::parametric_elements::ElementOf;
 use crate::model::terms::{Call, Terms, UNRELAXED, mid, rate};
 use std::collections::BTreeMap;
-use std::sync::Arc;
 
 const INERTIA: &str = "block inertia";
 /// Elasticity and electroelasticity.
@@ -79,14 +79,16 @@ impl Solids {
                 terms.without(VISCOSITY, "a state of rest dissipates nothing");
                 continue;
             }
-            let element = |viscosity| ViscousElement {
-                shape: c.shapes[e].clone(),
-                law: Viscosity { viscosity },
-                nodes: c.nodes(e),
-            };
             let call = Call(VISCOSITY, "viscosity of", &c.solid.name);
             let constant = c.constant(e, MaterialConstant::Viscosity);
-            call.add_linear(constant, viscosity, element, terms);
+            of_shape!(&c.shapes[e], shape => {
+                let element = |viscosity| ViscousElement {
+                    shape: shape.clone(),
+                    law: Viscosity { viscosity },
+                    nodes: c.nodes(e),
+                };
+                call.add_linear(constant, viscosity, element, terms);
+            });
         }
     }
 }
@@ -199,12 +201,7 @@ impl Solids {
             let Some(density) = density(c, e) else {
                 continue;
             };
-            let (nodes, mass) = (c.nodes(e), c.shapes[e].mass(density));
-            for (i, &a) in nodes.iter().enumerate() {
-                for (j, &b) in nodes.iter().enumerate().filter(|&(_, &b)| a <= b) {
-                    *sums.entry([a, b]).or_default() += mass[i][j];
-                }
-            }
+            of_shape!(&c.shapes[e], shape => add_masses(c, e, shape, density, &mut sums));
         }
         sums
     }
@@ -221,6 +218,25 @@ impl Solids {
     }
 }
 
+/// Adds the consistent masses of an element with a density.
+fn add_masses<const NODES: usize>(
+    c: &SolidBlock,
+    e: usize,
+    _: &ElementGeometry<NODES>,
+    density: f64,
+    sums: &mut BTreeMap<[usize; 2], f64>,
+) where
+    Parent<NODES>: Interpolated<NODES>,
+{
+    let nodes: [usize; NODES] = c.nodes(e);
+    let mass = ElementGeometry::mass(&c.unstretched::<NODES>(e), density);
+    for (i, &a) in nodes.iter().enumerate() {
+        for (j, &b) in nodes.iter().enumerate().filter(|&(_, &b)| a <= b) {
+            *sums.entry([a, b]).or_default() += mass[i][j];
+        }
+    }
+}
+
 const MAXWELL: [&str; 2] = ["block maxwell elasticity", "block maxwell viscosity"];
 
 impl Solids {
@@ -231,16 +247,17 @@ impl Solids {
                 if let Some(strains) = internals.strains(b, e, branch) {
                     add_branch(c, e, branch, constants, strains, terms);
                 } else if terms.is_instantaneous() {
-                    let shape = Arc::new(c.reference_shape(e));
-                    let element = |shear_modulus| FiniteElement {
-                        shape: shape.clone(),
-                        law: c.unrelaxed(shear_modulus),
-                        nodes: c.nodes(e),
-                        terminals: (),
-                    };
                     let call = Call(MAXWELL[0], UNRELAXED, &c.solid.name);
                     let constant = c.constant(e, MaterialConstant::BranchModulus(branch));
-                    call.add_linear(constant, constants.shear_modulus, element, terms);
+                    of_shape!(c.reference_shape(e), shape => {
+                        let element = |shear_modulus| FiniteElement {
+                            shape: shape.clone(),
+                            law: c.unrelaxed(shear_modulus),
+                            nodes: c.nodes(e),
+                            terminals: (),
+                        };
+                        call.add_linear(constant, constants.shear_modulus, element, terms);
+                    });
                 }
             }
         }
@@ -273,8 +290,7 @@ fn add_branch(
     let both = &modulus * &read.constant(of_time, relaxation_time);
     let both = read.into_constant(both);
     let strains = strains.map(|parts| parts.map(|part| terms.new_vector(part)));
-    let shape = c.shapes[e].clone();
-    for ([stretches, shears], volume) in strains.into_iter().zip(shape.weights()) {
+    for ([stretches, shears], volume) in strains.into_iter().zip(c.shapes[e].weights()) {
         let (stretched, sheared) = (mid(stretches), mid(shears));
         let rates = [rate(stretches), rate(shears)];
         let element = |coefficient| Element {
@@ -285,13 +301,15 @@ fn add_branch(
         let given = element(relaxation_time * shear_modulus * volume);
         viscosity.add_times(given, element(*volume), both.clone(), terms);
     }
-    let element = |shear_modulus| MaxwellElement {
-        shape: shape.clone(),
-        law: MaxwellSpring { shear_modulus },
-        nodes: c.nodes(e),
-        strains,
-    };
-    elasticity.add_linear(of_modulus, shear_modulus, element, terms);
+    of_shape!(&c.shapes[e], shape => {
+        let element = |shear_modulus| MaxwellElement {
+            shape: shape.clone(),
+            law: MaxwellSpring { shear_modulus },
+            nodes: c.nodes(e),
+            strains,
+        };
+        elasticity.add_linear(of_modulus, shear_modulus, element, terms);
+    });
 }
 
 impl Model {
@@ -305,7 +323,6 @@ impl Model {
     ) -> Option<Matrix> {
         let of = &self.solids[block];
         let branches = of.material(element).maxwell.list();
-        let x = of.nodes(element).map(|v| at.x[v]);
         if let Some(first) = self.internals.of_elements.get(&(block, element)) {
             let first = self.action.map.internal().start + first;
             let stress = |(branch, shear_modulus): (usize, f64)| {
@@ -316,7 +333,10 @@ impl Model {
                         strain[point] = at.z[first + count * (POINTS * branch + point) + m];
                     }
                 }
-                MaxwellSpring { shear_modulus }.stress(&of.shapes[element], &x, &strains)
+                let law = MaxwellSpring { shear_modulus };
+                of_shape!(&of.shapes[element], shape => {
+                    law.stress(shape, &of.nodes(element).map(|v| at.x[v]), &strains)
+                })
             };
             let moduli = branches.iter().map(|branch| branch.shear_modulus);
             return Some(moduli.enumerate().map(stress).sum());
@@ -327,6 +347,8 @@ impl Model {
         }
         let sum = branches.iter().map(|branch| branch.shear_modulus).sum();
         let law = of.unrelaxed(sum);
-        Some(law.fields(&of.reference_shape(element), &x, &()).stress)
+        Some(of_shape!(of.reference_shape(element), shape => {
+            law.fields(&shape, &of.nodes(element).map(|v| at.x[v]), &()).stress
+        }))
     }
 }

@@ -7,7 +7,7 @@ use std::collections::{BTreeSet, HashMap};
 
 impl Solid {
     /// Returns true if a charge on faces acts on potentials: on a dielectric that touches an electrode at a voltage, beside that electrode.
-    pub fn takes_charge(&self, faces: &[[usize; 4]]) -> bool {
+    pub fn takes_charge(&self, faces: &[Vec<usize>]) -> bool {
         let charged: BTreeSet<usize> = faces.concat().into_iter().collect();
         let held = |e: &&Electrode| e.potential != Potential::Floating;
         let held: BTreeSet<usize> = self
@@ -16,7 +16,7 @@ impl Solid {
             .filter(held)
             .flat_map(|e| e.nodes.clone())
             .collect();
-        let elements = self.mesh.hexahedra.iter().zip(dielectric(self, &charged));
+        let elements = self.mesh.elements().zip(dielectric(self, &charged));
         let mut reached = elements
             .filter(|(_, has_field)| *has_field)
             .flat_map(|(nodes, _)| nodes);
@@ -68,8 +68,8 @@ pub(crate) fn dielectric(solid: &Solid, charged: &BTreeSet<usize>) -> Vec<bool> 
     }
     // Nodes, then elements.
     let count = mesh.nodes.len();
-    let mut parts = DisjointSets::new(count + mesh.hexahedra.len());
-    for (e, nodes) in mesh.hexahedra.iter().enumerate().filter(|(e, _)| is[*e]) {
+    let mut parts = DisjointSets::new(count + mesh.element_count());
+    for (e, nodes) in mesh.elements().enumerate().filter(|(e, _)| is[*e]) {
         for &node in nodes.iter().filter(|node| !held.contains_key(node)) {
             parts.join(node, count + e);
         }
@@ -82,7 +82,7 @@ pub(crate) fn dielectric(solid: &Solid, charged: &BTreeSet<usize>) -> Vec<bool> 
         }
     }
     let mut potentials: HashMap<usize, Vec<Potential>> = HashMap::new();
-    for (e, nodes) in mesh.hexahedra.iter().enumerate().filter(|(e, _)| is[*e]) {
+    for (e, nodes) in mesh.elements().enumerate().filter(|(e, _)| is[*e]) {
         for potential in nodes.iter().filter_map(|node| held.get(node)) {
             let seen = potentials.entry(parts.smallest(count + e)).or_default();
             if !seen.contains(potential) {
@@ -98,7 +98,7 @@ pub(crate) fn dielectric(solid: &Solid, charged: &BTreeSet<usize>) -> Vec<bool> 
         let seen = potentials.get(&part);
         is[e] && seen.is_some_and(|seen| seen.len() >= least)
     };
-    (0..mesh.hexahedra.len()).map(&mut reached).collect()
+    (0..mesh.element_count()).map(&mut reached).collect()
 }
 
 /// Sources whose voltages do something in a system with these charged nodes of each block: of dielectric muscles, and of driven electrodes that a dielectric element touches.
@@ -108,10 +108,10 @@ pub(crate) fn voltages(system: &System, charged: impl Fn(usize) -> BTreeSet<usiz
     let mut voltages: Vec<usize> = muscles.map(|(m, _)| m).collect();
     for (block, solid) in system.solids.iter().enumerate() {
         let is = dielectric(solid, &charged(block));
-        let elements = solid.mesh.hexahedra.iter().zip(&is);
+        let elements = solid.mesh.elements().zip(&is);
         let reached: BTreeSet<usize> = elements
             .filter(|(_, is)| **is)
-            .flat_map(|(nodes, _)| *nodes)
+            .flat_map(|(nodes, _)| nodes.iter().copied())
             .collect();
         for electrode in &solid.electrodes {
             if let Potential::Driven { source, .. } = electrode.potential

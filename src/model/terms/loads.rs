@@ -1,8 +1,9 @@
 //! Terms of loads: forces on points of bodies, on coordinates of joints and on nodes of blocks, charges on nodes.
 
 use crate::energy::{Coefficient, DeadLoad, FollowingForce, GivenCharge, SurfaceCharge};
-use crate::functional::{Element, PressureFace};
+use crate::functional::{Element, PressureFace, areas};
 use crate::math::Vector;
+use crate::mesh::interpolation::{Cell, Interpolation, Parent};
 use crate::model::components::muscle::{CHARGES as MUSCLE_CHARGES, constants};
 use crate::model::components::{BlockLoad, Load, LoadPlace};
 use crate::model::constants::free_parameters::{MovedPoints, Read};
@@ -151,16 +152,10 @@ impl Loaded<'_, '_> {
             BlockLoad::Pressure {
                 faces,
                 follows: true,
-            } => {
-                for face in faces {
-                    let element = PressureFace {
-                        nodes: face.map(|node| block.vectors[node]),
-                        pressure: self.size,
-                    };
-                    self.terms
-                        .collect(FOLLOWING, "the pressure of", self.name, element);
-                }
-            }
+            } => match mesh.cell() {
+                Cell::Hexahedron => self.press::<4>(block, faces),
+                Cell::Tetrahedron => self.press::<6>(block, faces),
+            },
             BlockLoad::Charge(faces) => {
                 for (node, area) in mesh.areas_of(faces) {
                     self.charge(block, node, area);
@@ -173,6 +168,23 @@ impl Loaded<'_, '_> {
                     volumes.into_iter().map(|(n, part)| (n, direction * part)),
                 );
             }
+        }
+    }
+
+    /// A pressure that follows faces with so many nodes each.
+    fn press<const NODES: usize>(&mut self, block: &SolidBlock, faces: &[Vec<usize>])
+    where
+        Parent<NODES>: Interpolation<2, NODES>,
+    {
+        let areas = areas();
+        for face in faces {
+            let element = PressureFace::<NODES> {
+                nodes: std::array::from_fn(|i| block.vectors[face[i]]),
+                areas: areas.clone(),
+                pressure: self.size,
+            };
+            let why = "the pressure of";
+            self.terms.collect(FOLLOWING, why, self.name, element);
         }
     }
 

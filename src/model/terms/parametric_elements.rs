@@ -5,7 +5,7 @@ use crate::element::{ElementLaw, IsochoricLaw};
 use crate::energy::NeoHooke;
 use crate::functional::{FiniteElement, FreeConstant, Kernel, VariedElement};
 use crate::model::constants::constant::MaterialConstant;
-use crate::model::layout::solid_block::SolidBlock;
+use crate::model::layout::solid_block::{SolidBlock, of_shape};
 use crate::model::terms::{Call, Terms};
 
 /// Constants of an energy beside those of its law of elasticity, in all of which it is linear: μ, λ, c₁, c₂ and ε.
@@ -149,13 +149,15 @@ impl ElementOf<'_> {
         let Self { block, number, .. } = self;
         let mut law = block.passive(number).by(law);
         (law.shear_modulus, law.lame_lambda) = (1.0, 0.0);
-        let element = VariedElement {
-            shape: block.shapes[number].clone(),
-            law,
-            nodes: block.nodes(number),
-            limit,
-        };
-        self.call().add_scaled(element, factor, terms);
+        of_shape!(&block.shapes[number], shape => {
+            let element = VariedElement {
+                shape: shape.clone(),
+                law,
+                nodes: block.nodes(number),
+                limit,
+            };
+            self.call().add_scaled(element, factor, terms);
+        });
     }
 
     /// Adds an element of these constants, times factors, if there are any.
@@ -171,28 +173,29 @@ impl ElementOf<'_> {
             number,
             names,
         } = self;
-        let (shape, nodes) = (block.shapes[number].clone(), block.nodes(number));
-        if self.is_charged() && (factor.is_none() || constants[2..] != [0.0; 3]) {
-            let law = block.dielectric(number).with_constants(constants).by(law);
-            let terminals = block.terminals(number);
+        let is_charged = self.is_charged() && (factor.is_none() || constants[2..] != [0.0; 3]);
+        of_shape!(&block.shapes[number], shape => {
+            let (shape, nodes) = (shape.clone(), block.nodes(number));
+            if is_charged {
+                let element = FiniteElement {
+                    shape,
+                    law: block.dielectric(number).with_constants(constants).by(law),
+                    nodes,
+                    terminals: block.terminals(number),
+                };
+                let call = Call(names[1], DIELECTRIC, &block.solid.name);
+                return collect(call, element, factor, terms);
+            }
+            let mut law = block.passive(number).by(law);
+            [law.shear_modulus, law.lame_lambda] = [constants[0], constants[1]];
             let element = FiniteElement {
                 shape,
                 law,
                 nodes,
-                terminals,
+                terminals: (),
             };
-            let call = Call(names[1], DIELECTRIC, &block.solid.name);
-            return collect(call, element, factor, terms);
-        }
-        let mut law = block.passive(number).by(law);
-        [law.shear_modulus, law.lame_lambda] = [constants[0], constants[1]];
-        let element = FiniteElement {
-            shape,
-            law,
-            nodes,
-            terminals: (),
-        };
-        collect(self.call(), element, factor, terms);
+            collect(self.call(), element, factor, terms);
+        });
     }
 }
 

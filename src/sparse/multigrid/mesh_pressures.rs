@@ -25,8 +25,8 @@ pub(super) struct MeshElements {
 impl MeshElements {
     /// Those of a mesh.
     pub(super) fn of_mesh(mesh: &NodeMesh) -> Self {
-        let rows = mesh.elements.iter().map(|nodes| nodes.to_vec());
-        let centre = |nodes: &[u32; 8]| {
+        let rows = mesh.elements.iter().cloned();
+        let centre = |nodes: &Vec<u32>| {
             let mut sum = [0.0; 3];
             for &node in nodes {
                 for (sum, x) in sum.iter_mut().zip(mesh.places[node as usize]) {

@@ -172,7 +172,7 @@ pub(super) enum VolumePlaces {
 
 impl VolumePlaces {
     /// Of a mesh of elements, whose nodes have a bit for each component without a given value.
-    pub(super) fn of_mesh(elements: &[[u32; CORNERS]], free: &[u8]) -> Self {
+    pub(super) fn of_mesh(elements: &[Vec<u32>], free: &[u8]) -> Self {
         let mut by_nodes = FxHashMap::<_, Vec<u32>>::default();
         let mut list = Vec::with_capacity(elements.len());
         for (element, nodes) in elements.iter().enumerate() {

@@ -13,18 +13,18 @@ use std::ops::Range;
 use std::slice::IterMut;
 use std::sync::Arc;
 
-/// A mesh of hexahedra whose nodes are on no grid.
+/// A mesh whose nodes are on no grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NodeMesh {
     /// Places of the nodes in mm.
     pub places: Vec<[f64; 3]>,
-    /// Nodes of each element: around its lower face, then around its upper one.
-    pub elements: Vec<[u32; 8]>,
+    /// Nodes of each element; of a hexahedron around its lower face, then around its upper one.
+    pub elements: Vec<Vec<u32>>,
     /// Unknowns of each node by component; `None` where the value is given.
     pub unknowns: Vec<[Option<u32>; COMPONENTS]>,
     /// Length of the shortest edge in mm.
     pub shortest_edge: f64,
-    /// True if elements have pressures, as they resist changes of their volumes by far more than anything else.
+    /// True if the elements are hexahedra with pressures, as they resist changes of their volumes by far more than anything else.
     pub has_pressures: bool,
 }
 
@@ -93,7 +93,7 @@ impl BlockRows {
     }
 
     /// The pattern of the matrix that couples the nodes of each element with each other.
-    pub(super) fn of_elements(nodes: usize, elements: &[[u32; 8]]) -> Self {
+    pub(super) fn of_elements(nodes: usize, elements: &[Vec<u32>]) -> Self {
         let mut rows = vec![Vec::new(); nodes];
         for element in elements {
             for &node in element {
