@@ -199,8 +199,8 @@ class Electrode(TypedDict):
     """Its potential."""
 
 
-Element: TypeAlias = "Literal['hex8', 'hex8_q1p0']"
-"""Kind of hexahedron: its treatment of volume."""
+Element: TypeAlias = "Literal['hex8', 'hex8_q1p0', 'tet10', 'tet10_p2p0']"
+"""Kind of element: its interpolation, and its treatment of volume."""
 
 
 Fixed: TypeAlias = "Text | Held"
@@ -231,7 +231,7 @@ class Gent(TypedDict):
 
 
 class Grid(TypedDict):
-    """A box cut into hexahedra."""
+    """A box cut into hexahedra, each of them into six tetrahedra where the kind of its elements is one of these."""
 
     corner: NotRequired[Sequence[Quantity] | Numbers]
     """Lower corner, SI unit m; the origin where not written."""

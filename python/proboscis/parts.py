@@ -266,13 +266,13 @@ class Muscle(Part):
 
 
 class Solid(Part):
-    """An elastic block of hexahedra: a `box` or a `mesh`, of one `material` or of `materials` by region.
+    """An elastic block of finite elements: a `box` or a `mesh`, of one `material` or of `materials` by region.
 
     Faces are `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max` of a box, and physical groups of a mesh.
 
     * `box`: Box with edges along the axes of the ground frame.
     * `electrodes`: Electrodes; without any the block has no potential.
-    * `element`: Kind of hexahedron; `hex8` where not written.
+    * `element`: Kind of its elements; `hex8` where not written, `tet10` of a mesh of tetrahedra.
     * `fixed`: Faces and other places that are held. A node that is glued as well moves with its body.
     * `glued`: Names of bodies by the faces that are glued to them; a face glued to `ground` is clamped.
     * `material`: Name of the material.

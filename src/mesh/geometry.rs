@@ -2,7 +2,7 @@
 
 use crate::math::DisjointSets;
 use crate::mesh::Mesh;
-use crate::mesh::interpolation::{Cell, around, corners, flat_parts};
+use crate::mesh::cell::{Cell, around, corners, flat_parts};
 use nalgebra::Vector3;
 use rustc_hash::FxHashMap;
 use std::collections::HashMap;

@@ -3,6 +3,7 @@
 use crate::math::refuse;
 use crate::mesh::Mesh;
 use crate::mesh::error::{MeshError, MeshPlace};
+use crate::mesh::tetrahedron::raised;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -164,5 +165,42 @@ impl Mesh {
             }
             planes
         }))
+    }
+}
+
+/// Tetrahedra around the diagonal of a hexahedron, which cut opposite faces alike.
+const IN_HEXAHEDRON: [[usize; 4]; 6] = [
+    [0, 1, 2, 6],
+    [0, 2, 3, 6],
+    [0, 3, 7, 6],
+    [0, 7, 4, 6],
+    [0, 4, 5, 6],
+    [0, 5, 1, 6],
+];
+
+impl Mesh {
+    /// The mesh with each hexahedron of a grid cut into six tetrahedra with straight edges. The middle of an edge is in the sets of both ends.
+    pub fn in_tetrahedra(mut self) -> Self {
+        let hexahedra = std::mem::take(&mut self.hexahedra);
+        let parts = hexahedra
+            .iter()
+            .flat_map(|nodes| IN_HEXAHEDRON.map(|corners| corners.map(|corner| nodes[corner])));
+        let corners: Vec<_> = parts.collect();
+        let (tetrahedra, edges) = raised(&corners, self.nodes.len());
+        let first = self.nodes.len();
+        for set in self.sets.values_mut() {
+            let mut is_in = vec![false; first];
+            set.iter().for_each(|&node| is_in[node] = true);
+            let middles = edges.iter().enumerate();
+            let middles = middles.filter(|(_, ends)| ends.iter().all(|&end| is_in[end]));
+            set.extend(middles.map(|(middle, _)| first + middle));
+        }
+        let middle = |ends: [usize; 2]| 0.5 * (self.nodes[ends[0]] + self.nodes[ends[1]]);
+        let middles: Vec<_> = edges.into_iter().map(middle).collect();
+        self.nodes.extend(middles);
+        let regions = self.regions.iter();
+        self.regions = regions.flat_map(|&region| [region; 6]).collect();
+        self.tetrahedra = tetrahedra;
+        self
     }
 }

@@ -62,3 +62,28 @@ impl Element<8> for Parent<8> {
         points
     };
 }
+
+/// A bilinear face.
+impl Interpolation<2, 4> for Parent<4> {
+    fn values(at: &[f64; 2]) -> [f64; 4] {
+        std::array::from_fn(|i| 0.25 * face_factor(i, at, 0) * face_factor(i, at, 1))
+    }
+
+    fn slopes(at: &[f64; 2]) -> [[f64; 2]; 4] {
+        let slope = |i: usize, m: usize| 0.25 * CORNERS[i][m] * face_factor(i, at, 1 - m);
+        std::array::from_fn(|i| [0, 1].map(|m| slope(i, m)))
+    }
+
+    fn quadrature() -> Vec<Point<2>> {
+        // The corners of the square are the first ones of the cube.
+        let at = |corner: &[f64; 3]| [corner[0], corner[1]].map(|c| c / 3.0_f64.sqrt());
+        CORNERS[..4]
+            .iter()
+            .map(|corner| (at(corner), 1.0))
+            .collect()
+    }
+}
+
+fn face_factor(corner: usize, at: &[f64; 2], direction: usize) -> f64 {
+    1.0 + CORNERS[corner][direction] * at[direction]
+}

@@ -1,10 +1,7 @@
-//! Interpolation between the nodes of an element: shape functions N_i(ξ) in a parent cell, points of quadrature, and faces.
+//! Interpolation between the nodes of an element: shape functions N_i(ξ) in a parent cell, and points of quadrature.
 //!
-//! A kind of element is a file with its shape functions, and a line of [`Cell`]. Formulas have the number of nodes in their types; meshes and
-//! pictures ask [`Cell`].
-
-use super::hexahedron::{self, CORNERS};
-use super::tetrahedron;
+//! Formulas have the number of nodes in their types. A kind of element is a file with its shape functions, and a line of
+//! [`Cell`](super::cell::Cell), which meshes and pictures ask.
 
 /// A place in a parent cell of so many dimensions, and the weight of a function there.
 pub type Point<const DIMENSIONS: usize> = ([f64; DIMENSIONS], f64);
@@ -35,103 +32,49 @@ pub trait Element<const NODES: usize>: Interpolation<3, NODES> {
     const POINTS: [Point<3>; 8];
 }
 
-/// Kind of an element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cell {
-    /// Trilinear, with 8 nodes.
-    Hexahedron,
-    /// Quadratic, with 10 nodes.
-    Tetrahedron,
+/// Shape functions and their slopes at a point of a face.
+pub(super) struct FacePoint {
+    pub(super) weight: f64,
+    pub(super) values: Vec<f64>,
+    pub(super) slopes: Vec<[f64; 2]>,
 }
 
-impl Cell {
-    /// The kind of an element with these nodes.
-    ///
-    /// # Panics
-    /// There is none with so many.
-    pub fn of(nodes: &[usize]) -> Self {
-        match nodes.len() {
-            8 => Self::Hexahedron,
-            10 => Self::Tetrahedron,
-            count => unreachable!("no element has {count} nodes"),
+/// Those of the faces with so many nodes.
+pub(super) fn shapes<const NODES: usize>() -> Vec<FacePoint>
+where
+    Parent<NODES>: Interpolation<2, NODES>,
+{
+    let points = Parent::<NODES>::quadrature().into_iter();
+    let shape = |(at, weight): Point<2>| FacePoint {
+        weight,
+        values: Parent::<NODES>::values(&at).to_vec(),
+        slopes: Parent::<NODES>::slopes(&at).to_vec(),
+    };
+    points.map(shape).collect()
+}
+
+/// Five Gauss points between 0 and 1 with their weights.
+const GAUSS: [[f64; 2]; 5] = [
+    [0.046_910_077_030_668_004, 0.118_463_442_528_094_54],
+    [0.230_765_344_947_158_45, 0.239_314_335_249_683_24],
+    [0.5, 0.284_444_444_444_444_44],
+    [0.769_234_655_052_841_6, 0.239_314_335_249_683_24],
+    [0.953_089_922_969_332, 0.118_463_442_528_094_54],
+];
+
+/// Products of Gauss points in a square or a cube that is collapsed to a triangle or a tetrahedron, ξ₁ = s₁, ξ₂ = s₂ (1 − s₁),
+/// ξ₃ = s₃ (1 − s₁)(1 − s₂) (A. H. Stroud, Approximate Calculation of Multiple Integrals, 1971).
+pub(super) fn collapsed<const D: usize>() -> Vec<Point<D>> {
+    let count = GAUSS.len().pow(D as u32);
+    let point = |number: usize| {
+        let (mut at, mut weight, mut left) = ([0.0; D], 1.0, 1.0);
+        for (m, at) in at.iter_mut().enumerate() {
+            let [s, w] = GAUSS[number / GAUSS.len().pow(m as u32) % GAUSS.len()];
+            *at = s * left;
+            weight *= w * left;
+            left *= 1.0 - s;
         }
-    }
-
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Hexahedron => "hexahedron",
-            Self::Tetrahedron => "tetrahedron",
-        }
-    }
-
-    /// Places among the nodes of an element of those of each face: its corners, counter-clockwise seen from outside, then the middles of its
-    /// edges from the first corner on, where it has any.
-    pub fn faces(self) -> &'static [&'static [usize]] {
-        match self {
-            Self::Hexahedron => &hexahedron::FACES,
-            Self::Tetrahedron => &tetrahedron::FACES,
-        }
-    }
-
-    /// Its number among the cells of VTK, which order nodes alike.
-    pub fn of_vtk(self) -> u8 {
-        match self {
-            Self::Hexahedron => 12,
-            Self::Tetrahedron => 24,
-        }
-    }
-}
-
-/// The corners of a face.
-pub fn corners(face: &[usize]) -> &[usize] {
-    match face.len() {
-        6 => &face[..3],
-        _ => face,
-    }
-}
-
-/// Nodes of a face one after the other around it.
-pub fn around(face: &[usize]) -> Vec<usize> {
-    match *face {
-        [a, b, c, ab, bc, ca] => vec![a, ab, b, bc, c, ca],
-        _ => face.to_vec(),
-    }
-}
-
-/// Flat parts of a face by their corners, counter-clockwise seen from outside; of a triangle the last corner is there twice.
-pub fn flat_parts(face: &[usize]) -> Vec<[usize; 4]> {
-    match *face {
-        [a, b, c, d] => vec![[a, b, c, d]],
-        [a, b, c, ab, bc, ca] => {
-            let corners = [[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]];
-            corners.map(|[a, b, c]| [a, b, c, c]).to_vec()
-        }
-        _ => unreachable!("no face has {} nodes", face.len()),
-    }
-}
-
-/// A bilinear face.
-impl Interpolation<2, 4> for Parent<4> {
-    fn values(at: &[f64; 2]) -> [f64; 4] {
-        std::array::from_fn(|i| 0.25 * factor(i, at, 0) * factor(i, at, 1))
-    }
-
-    fn slopes(at: &[f64; 2]) -> [[f64; 2]; 4] {
-        let slope = |i: usize, m: usize| 0.25 * CORNERS[i][m] * factor(i, at, 1 - m);
-        std::array::from_fn(|i| [0, 1].map(|m| slope(i, m)))
-    }
-
-    fn quadrature() -> Vec<Point<2>> {
-        // The corners of the square are the first ones of the cube.
-        let at = |corner: &[f64; 3]| [corner[0], corner[1]].map(|c| c / 3.0_f64.sqrt());
-        CORNERS[..4]
-            .iter()
-            .map(|corner| (at(corner), 1.0))
-            .collect()
-    }
-}
-
-fn factor(corner: usize, at: &[f64; 2], direction: usize) -> f64 {
-    1.0 + CORNERS[corner][direction] * at[direction]
+        (at, weight)
+    };
+    (0..count).map(point).collect()
 }

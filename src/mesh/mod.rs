@@ -3,6 +3,7 @@
 //! Meshes come from planes ([`grid`]) or from a file ([`gmsh`]); [`Mesh::check`] says whether elements can be integrated.
 //! [`triangulated`]: surfaces of triangles; [`enclosed`]: solids within them.
 
+pub mod cell;
 pub mod enclosed;
 pub mod error;
 pub mod geometry;
@@ -14,8 +15,8 @@ pub mod quality;
 mod tetrahedron;
 pub mod triangulated;
 
+use cell::Cell;
 pub use hexahedron::CORNERS;
-use interpolation::Cell;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 

@@ -5,8 +5,9 @@
 //! inside out.
 
 use super::Mesh;
+use super::cell::Cell;
 use super::error::{ElementName, MeshError, MeshPlace};
-use super::interpolation::{Cell, Element, Interpolation, Parent};
+use super::interpolation::{Element, Interpolation, Parent};
 use crate::math::refuse;
 use nalgebra::{Matrix3, Vector3};
 use std::collections::HashMap;
@@ -55,7 +56,7 @@ impl Mesh {
         name: impl Fn(usize) -> ElementName,
     ) -> Result<(), MeshError> {
         refuse!(if self.element_count() == 0, MeshPlace::Whole;
-            found "no element", expected "one hexahedron or tetrahedron or more");
+            found "no element", expected "one element or more");
         let mut seen: HashMap<Vec<usize>, usize> = HashMap::new();
         for (element, nodes) in self.elements().enumerate() {
             let mut sorted = nodes.to_vec();

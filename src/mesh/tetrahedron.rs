@@ -7,11 +7,9 @@
 //! Eight Gauss points lie in two orbits of (a, a, a, 1 − 3a). Of the rules of third degree with such points, which form a family of one
 //! parameter, this one integrates Σ λ_i⁴ too; its weights are positive.
 //!
-//! Masses and loads of faces take the products of five Gauss points in each direction of a square or a cube that is collapsed to the cell (A. H.
-//! Stroud, Approximate Calculation of Multiple Integrals, 1971), which are exact to degree 7.
+//! Masses and loads of faces take more points, which are exact to degree 7.
 
-use super::Mesh;
-use super::interpolation::{Element, Interpolation, Parent, Point};
+use super::interpolation::{Element, Interpolation, Parent, Point, collapsed};
 
 /// Ends of the edges with a middle, in the order of VTK; those of a face are the first three.
 const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
@@ -26,16 +24,7 @@ pub(super) const FACES: [&[usize]; 4] = [
 /// Places a of both orbits and weights for a volume of one.
 const ORBITS: [[f64; 2]; 2] = [
     [0.106_952_273_932_930_68, 0.111_472_033_488_137_86],
-    [0.328_054_696_711_426_65, 0.138_527_966_511_862_14],
-];
-
-/// Five Gauss points between 0 and 1 with their weights.
-const GAUSS: [[f64; 2]; 5] = [
-    [0.046_910_077_030_668_004, 0.118_463_442_528_094_54],
-    [0.230_765_344_947_158_45, 0.239_314_335_249_683_24],
-    [0.5, 0.284_444_444_444_444_44],
-    [0.769_234_655_052_841_6, 0.239_314_335_249_683_24],
-    [0.953_089_922_969_332, 0.118_463_442_528_094_54],
+    [0.328_054_696_711_426_7, 0.138_527_966_511_862_14],
 ];
 
 /// λ_i of a place.
@@ -70,22 +59,6 @@ fn slopes<const D: usize, const NODES: usize>(at: &[f64; D]) -> [[f64; D]; NODES
         }
     };
     std::array::from_fn(|i| std::array::from_fn(|m| of(i, m)))
-}
-
-/// Products of Gauss points in a collapsed square or cube: ξ₁ = s₁, ξ₂ = s₂ (1 − s₁), ξ₃ = s₃ (1 − s₁)(1 − s₂).
-fn collapsed<const D: usize>() -> Vec<Point<D>> {
-    let count = GAUSS.len().pow(D as u32);
-    let point = |number: usize| {
-        let (mut at, mut weight, mut left) = ([0.0; D], 1.0, 1.0);
-        for (m, at) in at.iter_mut().enumerate() {
-            let [s, w] = GAUSS[number / GAUSS.len().pow(m as u32) % GAUSS.len()];
-            *at = s * left;
-            weight *= w * left;
-            left *= 1.0 - s;
-        }
-        (at, weight)
-    };
-    (0..count).map(point).collect()
 }
 
 impl Interpolation<3, 10> for Parent<10> {
@@ -169,41 +142,4 @@ pub(super) fn raised(corners: &[[usize; 4]], next: usize) -> (Vec<[usize; 10]>, 
         })
     };
     (corners.iter().map(&mut element).collect(), edges)
-}
-
-/// Tetrahedra around the diagonal of a hexahedron, which cut opposite faces alike.
-const IN_HEXAHEDRON: [[usize; 4]; 6] = [
-    [0, 1, 2, 6],
-    [0, 2, 3, 6],
-    [0, 3, 7, 6],
-    [0, 7, 4, 6],
-    [0, 4, 5, 6],
-    [0, 5, 1, 6],
-];
-
-impl Mesh {
-    /// The mesh with each hexahedron of a grid cut into six tetrahedra with straight edges. The middle of an edge is in the sets of both ends.
-    pub fn in_tetrahedra(mut self) -> Self {
-        let hexahedra = std::mem::take(&mut self.hexahedra);
-        let parts = hexahedra
-            .iter()
-            .flat_map(|nodes| IN_HEXAHEDRON.map(|corners| corners.map(|corner| nodes[corner])));
-        let corners: Vec<_> = parts.collect();
-        let (tetrahedra, edges) = raised(&corners, self.nodes.len());
-        let first = self.nodes.len();
-        for set in self.sets.values_mut() {
-            let mut is_in = vec![false; first];
-            set.iter().for_each(|&node| is_in[node] = true);
-            let middles = edges.iter().enumerate();
-            let middles = middles.filter(|(_, ends)| ends.iter().all(|&end| is_in[end]));
-            set.extend(middles.map(|(middle, _)| first + middle));
-        }
-        let middle = |ends: [usize; 2]| 0.5 * (self.nodes[ends[0]] + self.nodes[ends[1]]);
-        let middles: Vec<_> = edges.into_iter().map(middle).collect();
-        self.nodes.extend(middles);
-        let regions = self.regions.iter();
-        self.regions = regions.flat_map(|&region| [region; 6]).collect();
-        self.tetrahedra = tetrahedra;
-        self
-    }
 }

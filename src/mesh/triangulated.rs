@@ -2,7 +2,7 @@
 
 use crate::mesh::Mesh;
 use crate::mesh::geometry::{Faces, bounds};
-use crate::mesh::interpolation::{Interpolation, Parent, Point};
+use crate::mesh::interpolation::shapes;
 use nalgebra::Vector3;
 use rustc_hash::FxHashMap;
 use std::collections::{BTreeMap, HashSet};
@@ -200,25 +200,4 @@ impl Mesh {
             }
         }
     }
-}
-
-/// Shape functions and their slopes at a point of a face.
-struct FacePoint {
-    weight: f64,
-    values: Vec<f64>,
-    slopes: Vec<[f64; 2]>,
-}
-
-/// Those of the faces with so many nodes.
-fn shapes<const NODES: usize>() -> Vec<FacePoint>
-where
-    Parent<NODES>: Interpolation<2, NODES>,
-{
-    let points = Parent::<NODES>::quadrature().into_iter();
-    let shape = |(at, weight): Point<2>| FacePoint {
-        weight,
-        values: Parent::<NODES>::values(&at).to_vec(),
-        slopes: Parent::<NODES>::slopes(&at).to_vec(),
-    };
-    points.map(shape).collect()
 }

@@ -3,7 +3,7 @@
 //! The arrow of a load is along the force from the point on which it acts, against a face under a pressure, or about the axis of the joint as an
 //! arc, as long as the load is large relative to its largest size in the motion. Surface charges have none.
 
-use crate::mesh::interpolation::flat_parts;
+use crate::mesh::cell::flat_parts;
 use crate::model::Component;
 use crate::model::components::{BlockLoad, Contact, Load, LoadPlace};
 use crate::model::system::{Attachment, JointKind, System};
@@ -231,11 +231,7 @@ fn faces(system: &System, load: &Load) -> Vec<usize> {
         .flat_map(|face| flat_parts(face))
         .collect();
     let acts = |(_, face): &(usize, &[usize; 4])| of_load.contains(*face);
-    let middle = of_load
-        .iter()
-        .map(|face| centre(face))
-        .sum::<Vector3<f64>>()
-        / of_load.len() as f64;
+    let middle = of_load.iter().map(centre).sum::<Vector3<f64>>() / of_load.len() as f64;
     let away = |face: &[usize; 4]| (centre(face) - middle).norm();
     let acting = surface.iter().enumerate().filter(acts);
     let nearest = acting.min_by(|(_, a), (_, b)| away(a).total_cmp(&away(b)));

@@ -13,7 +13,7 @@ use std::fmt::Write;
 use std::fs;
 use std::io::Write as _;
 
-use crate::mesh::interpolation::Cell;
+use crate::mesh::cell::Cell;
 use crate::report::atomic::{self, WriteError};
 use crate::report::file_set::FileSet;
 use crate::report::origin::Origin;

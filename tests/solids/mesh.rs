@@ -225,7 +225,7 @@ fn meshes_that_are_refused() {
     };
     assert_eq!(
         Mesh::default().check().unwrap_err().to_string(),
-        "mesh: found no element, expected one hexahedron or more"
+        "mesh: found no element, expected one element or more"
     );
     let empty = Grid::uniform(Vector3::zeros(), Vector3::repeat(1.0), [2, 0, 2]).mesh();
     assert!(

@@ -8,7 +8,7 @@ use crate::files::scene::point::{CornersSpec, Point, unit_axis, vector};
 use crate::files::scene::spec_solids::PlaneSpec;
 use crate::files::units::quantity::{Length, Quantity};
 use crate::mesh::Mesh;
-use crate::mesh::interpolation::flat_parts;
+use crate::mesh::cell::flat_parts;
 use crate::model::components::{ContactShape, ContactSide};
 use crate::model::system::{Attachment, Solid};
 use nalgebra::Vector3;

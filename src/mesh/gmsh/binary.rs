@@ -3,8 +3,7 @@
 //! Counts and numbers are integers of 4 bytes in format 2.2; in 4.1 counts, nodes and elements have 8 bytes, entities, kinds and groups 4. Places
 //! are doubles. An integer of one in the head tells the order of bytes.
 
-use super::Format;
-use super::contents::{Lines, shape};
+use super::contents::{Format, Lines, shape};
 use crate::math::refuse;
 use crate::mesh::error::{MeshError, MeshPlace};
 use std::fmt::{Display, Write};
@@ -49,14 +48,15 @@ pub(super) fn as_text(bytes: &[u8], file: &str, format: Format) -> Result<String
             ("Entities", Format::Four) => binary.entities()?,
             ("Nodes", Format::Four) => binary.nodes()?,
             ("Elements", Format::Four) => binary.elements()?,
-            _ => binary.copy(&format!("$End{name}"))?,
+            _ => {}
         }
-        let _ = writeln!(binary.text, "$End{name}");
+        let end = format!("$End{name}");
+        binary.copy(&end)?;
+        let _ = writeln!(binary.text, "{end}");
         // What follows are fields and the like.
         if name == "Elements" {
             break;
         }
-        binary.copy(&format!("$End{name}")).ok();
     }
     Ok(binary.text)
 }

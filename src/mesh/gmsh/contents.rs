@@ -12,6 +12,15 @@ use std::str::{FromStr, SplitWhitespace};
 /// Name of the region of elements that belong to no physical volume.
 pub const UNGROUPED: &str = "ungrouped";
 
+/// Layout of nodes and elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    /// 2.0 to 2.2: elements carry their groups.
+    Two,
+    /// 4.1: blocks of elements belong to entities, which carry groups.
+    Four,
+}
+
 /// Number of a physical group by the dimension of its elements; zero is no group.
 pub(super) type Group = (usize, u64);
 
@@ -202,7 +211,7 @@ pub(super) fn quoted(text: &str) -> String {
 pub(super) const HEXAHEDRON: usize = 5;
 pub(super) const LINEAR_TETRAHEDRON: usize = 4;
 pub(super) const TETRAHEDRON: usize = 11;
-/// What is expected of them.
+/// They in messages.
 pub(super) const VOLUMES: &str =
     "8-node hexahedra (type 5), or tetrahedra of 4 or 10 nodes (types 4 and 11)";
 

@@ -17,7 +17,7 @@ use super::Mesh;
 use super::error::MeshError;
 use crate::math::refuse;
 pub use contents::UNGROUPED;
-use contents::{Contents, Group};
+use contents::{Contents, Format, Group};
 use contents::{Line, Lines, quoted};
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -69,15 +69,6 @@ pub fn parse(bytes: &[u8], file: &str, unit: f64) -> Result<Mesh, MeshError> {
     let mut lines = Lines::new(&file, &text);
     self::format(&mut lines)?;
     contents(&mut lines, format)?.assemble(&file, unit)
-}
-
-/// Layout of nodes and elements.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Format {
-    /// 2.0 to 2.2: elements carry their groups.
-    Two,
-    /// 4.1: blocks of elements belong to entities, which carry groups.
-    Four,
 }
 
 /// The format, and true if the file is binary.

@@ -7,7 +7,8 @@ use crate::element::{
 use crate::energy::NeoHooke;
 use crate::functional::ScalarArg;
 use crate::math::{Matrix, Vector};
-use crate::mesh::interpolation::{Cell, Element, Parent};
+use crate::mesh::cell::Cell;
+use crate::mesh::interpolation::{Element, Parent};
 use crate::model::constants::constant::{Constant, MaterialConstant};
 use crate::model::system::{Electrode, Material, Potential, Solid};
 use std::collections::BTreeMap;
@@ -120,7 +121,7 @@ impl SolidBlock {
         std::array::from_fn(|i| self.vectors[nodes[i]])
     }
 
-    /// What lists have of the nodes of an element.
+    /// Entries of a list by node, of the nodes of an element.
     fn of_nodes<T: Copy, const NODES: usize>(&self, element: usize, of: &[T]) -> [T; NODES] {
         let nodes = self.solid.mesh.element(element);
         std::array::from_fn(|i| of[nodes[i]])

@@ -3,7 +3,7 @@
 use crate::math::{
     DIRECTION, Fault, Key, Vector, WHOLE, not_negative, positive, refuse, shortest, unique,
 };
-use crate::mesh::interpolation::Cell;
+use crate::mesh::cell::Cell;
 use crate::model::components::component::Component;
 use crate::model::components::{BlockLoad, Load, LoadPlace};
 use crate::model::system::circuit::Circuit;

@@ -10,7 +10,7 @@ pub(super) mod prestretch;
 
 use crate::math::Signal;
 use crate::mesh::Mesh;
-use crate::mesh::interpolation::Cell;
+use crate::mesh::cell::Cell;
 use crate::model::components::{BlockLoad, Components, Load, LoadPlace};
 use nalgebra::{Matrix3, Vector3};
 

@@ -3,7 +3,8 @@
 use crate::energy::{Coefficient, DeadLoad, FollowingForce, GivenCharge, SurfaceCharge};
 use crate::functional::{Element, PressureFace, areas};
 use crate::math::Vector;
-use crate::mesh::interpolation::{Cell, Interpolation, Parent};
+use crate::mesh::cell::Cell;
+use crate::mesh::interpolation::{Interpolation, Parent};
 use crate::model::components::muscle::{CHARGES as MUSCLE_CHARGES, constants};
 use crate::model::components::{BlockLoad, Load, LoadPlace};
 use crate::model::constants::free_parameters::{MovedPoints, Read};
