@@ -25,11 +25,19 @@ impl Cell {
         }
     }
 
-    /// Its name.
+    /// Name of one.
     pub fn name(self) -> &'static str {
         match self {
             Self::Hexahedron => "hexahedron",
             Self::Tetrahedron => "tetrahedron",
+        }
+    }
+
+    /// Name of several.
+    pub fn names(self) -> &'static str {
+        match self {
+            Self::Hexahedron => "hexahedra",
+            Self::Tetrahedron => "tetrahedra",
         }
     }
 

@@ -13,10 +13,11 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// Problems whose unknowns are those of box grids.
-const ON_GRIDS: [&str; 11] = [
+const ON_GRIDS: [&str; 12] = [
     "bending_actuator",
     "bending_actuator_step",
     "block",
+    "cad_finger",
     "clamped_stack",
     "clamped_stack_step",
     "creeping_block_at_once",

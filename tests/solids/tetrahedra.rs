@@ -405,7 +405,10 @@ fn what_does_not_fit_is_refused() {
     let mut solid = in_tetrahedra(clamped(None));
     solid.element = ElementKind::Hex8;
     let error = system(vec![solid.clone()]).check().unwrap_err().to_string();
-    assert!(error.contains("one of tetrahedron"), "{error}");
+    assert!(
+        error.contains("expected one of tetrahedra, of which the mesh consists"),
+        "{error}"
+    );
     solid.element = ElementKind::Tet10;
     solid.mesh.hexahedra = vec![[0, 1, 2, 3, 4, 5, 6, 7]];
     let error = solid.mesh.check().unwrap_err().to_string();

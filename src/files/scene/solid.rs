@@ -41,9 +41,6 @@ pub(crate) fn solid(
     let element = spec
         .element
         .map_or(ElementKind::of_mesh(&mesh), ElementKind::from);
-    refuse!(if element.cell() != mesh.cell(), scope.key("element");
-        found format!("a kind of {}", element.cell().name()),
-        expected format!("one of {}: the mesh consists of these", mesh.cell().name()));
     let (glued, grounded) = glued(spec, &mesh, bodies, &scope.key("glued"))?;
     let mut supports = supports(spec, &mesh, &scope.key("fixed"))?;
     supports.extend(grounded);

@@ -347,7 +347,7 @@ impl Muscle {
             found "\"section_inertia\" of a muscle of finite elements",
             expected "no such key, as all inertia of finite elements counts");
         refuse!(unless mesh.element.cell() == Cell::Hexahedron, Key("element");
-            found "a kind of tetrahedron", expected "one of hexahedron, into which a muscle is cut");
+            found "a kind of tetrahedra", expected "one of hexahedra, into which a muscle is cut");
         check_elements(mesh.elements).map_err(|fault| fault.under("elements"))?;
         let (along, layers) = (mesh.elements[2], mesh.layers);
         refuse!(unless layers > 0 && along.is_multiple_of(layers), Key("layers");
@@ -393,8 +393,8 @@ impl Solid {
         self.mesh.check().map_err(whole)?;
         let (kind, cell) = (self.element, self.mesh.cell());
         refuse!(unless kind.cell() == cell, Key("element");
-            found format!("a kind of {}", kind.cell().name()),
-            expected format!("one of {}: the mesh consists of these", cell.name()));
+            found format!("a kind of {}", kind.cell().names()),
+            expected format!("one of {}, of which the mesh consists", cell.names()));
         let of_electrodes = self.electrodes.iter().map(|e| &e.nodes);
         let mut sets = of_electrodes.chain(self.supports.iter().map(|s| &s.nodes));
         let count = self.mesh.nodes.len();
