@@ -3,6 +3,7 @@
 use crate::math::DisjointSets;
 use crate::mesh::Mesh;
 use crate::mesh::cell::{Cell, around, corners, flat_parts};
+use crate::mesh::tetrahedron::raised;
 use nalgebra::Vector3;
 use rustc_hash::FxHashMap;
 use std::collections::HashMap;
@@ -111,6 +112,17 @@ impl Mesh {
             .iter()
             .flat_map(|face| flat_parts(face))
             .collect()
+    }
+
+    /// Adds quadratic tetrahedra with straight edges that have these corners, with a node in the middle of each edge; returns the ends of the edges
+    /// in the order of these nodes.
+    pub(super) fn raise(&mut self, corners: &[[usize; 4]]) -> Vec<[usize; 2]> {
+        let (tetrahedra, edges) = raised(corners, self.nodes.len());
+        self.tetrahedra.extend(tetrahedra);
+        for [a, b] in &edges {
+            self.nodes.push(0.5 * (self.nodes[*a] + self.nodes[*b]));
+        }
+        edges
     }
 
     /// Elements of each connected part, ascending, parts by their first element; elements that share a node are connected.

@@ -3,7 +3,6 @@
 use crate::math::refuse;
 use crate::mesh::Mesh;
 use crate::mesh::error::{MeshError, MeshPlace};
-use crate::mesh::tetrahedron::raised;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -186,8 +185,8 @@ impl Mesh {
             .iter()
             .flat_map(|nodes| IN_HEXAHEDRON.map(|corners| corners.map(|corner| nodes[corner])));
         let corners: Vec<_> = parts.collect();
-        let (tetrahedra, edges) = raised(&corners, self.nodes.len());
         let first = self.nodes.len();
+        let edges = self.raise(&corners);
         for set in self.sets.values_mut() {
             let mut is_in = vec![false; first];
             set.iter().for_each(|&node| is_in[node] = true);
@@ -195,12 +194,8 @@ impl Mesh {
             let middles = middles.filter(|(_, ends)| ends.iter().all(|&end| is_in[end]));
             set.extend(middles.map(|(middle, _)| first + middle));
         }
-        let middle = |ends: [usize; 2]| 0.5 * (self.nodes[ends[0]] + self.nodes[ends[1]]);
-        let middles: Vec<_> = edges.into_iter().map(middle).collect();
-        self.nodes.extend(middles);
         let regions = self.regions.iter();
         self.regions = regions.flat_map(|&region| [region; 6]).collect();
-        self.tetrahedra = tetrahedra;
         self
     }
 }

@@ -28,7 +28,7 @@ pub(super) const FACES: [&[usize]; 6] = [
 const POINT: f64 = 0.577_350_269_189_625_8;
 
 /// 1 + ξ_i ξ in direction `m`.
-fn factor(i: usize, at: &[f64; 3], m: usize) -> f64 {
+fn factor<const DIMENSIONS: usize>(i: usize, at: &[f64; DIMENSIONS], m: usize) -> f64 {
     1.0 + CORNERS[i][m] * at[m]
 }
 
@@ -66,11 +66,11 @@ impl Element<8> for Parent<8> {
 /// A bilinear face.
 impl Interpolation<2, 4> for Parent<4> {
     fn values(at: &[f64; 2]) -> [f64; 4] {
-        std::array::from_fn(|i| 0.25 * face_factor(i, at, 0) * face_factor(i, at, 1))
+        std::array::from_fn(|i| 0.25 * factor(i, at, 0) * factor(i, at, 1))
     }
 
     fn slopes(at: &[f64; 2]) -> [[f64; 2]; 4] {
-        let slope = |i: usize, m: usize| 0.25 * CORNERS[i][m] * face_factor(i, at, 1 - m);
+        let slope = |i: usize, m: usize| 0.25 * CORNERS[i][m] * factor(i, at, 1 - m);
         std::array::from_fn(|i| [0, 1].map(|m| slope(i, m)))
     }
 
@@ -82,8 +82,4 @@ impl Interpolation<2, 4> for Parent<4> {
             .map(|corner| (at(corner), 1.0))
             .collect()
     }
-}
-
-fn face_factor(corner: usize, at: &[f64; 2], direction: usize) -> f64 {
-    1.0 + CORNERS[corner][direction] * at[direction]
 }

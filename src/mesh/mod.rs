@@ -60,7 +60,7 @@ impl Mesh {
         }
     }
 
-    /// The kind of its elements, that of the first one.
+    /// The kind of its elements.
     pub fn cell(&self) -> Cell {
         match self.tetrahedra.is_empty() {
             true => Cell::Hexahedron,

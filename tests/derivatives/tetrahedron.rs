@@ -1,14 +1,10 @@
 //! The quadratic tetrahedron against naive oracles: shape functions by the inverse of a Vandermonde matrix, the law over dual numbers.
 
 use crate::common::random::Random;
-use crate::hexahedron::{DIELECTRIC, STATES, close, close_flat, flat, law};
-use crate::naive_hexahedron::{Naive, determinant, inverse};
-use crate::oracle::Number;
+use crate::hexahedron::{DIELECTRIC, Kind, State, all_derivatives, close};
+use crate::naive_hexahedron::{determinant, inverse};
 use nalgebra::SMatrix;
-use proboscis::element::{
-    Dielectric, ElementEnergy, ElementGeometry, Field, Local, NodeState, Passive, Viscosity,
-    ViscousLocal, Volume,
-};
+use proboscis::element::{ElementGeometry, Passive, Viscosity, ViscousLocal};
 use proboscis::functional::areas;
 use proboscis::math::{Matrix, Vector};
 use proboscis::mesh::interpolation::{Element, Parent, Point};
@@ -69,7 +65,7 @@ fn jacobian(nodes: &[Vector; 10], at: [f64; 3]) -> [[f64; 3]; 3] {
 }
 
 /// A curved tetrahedron and a state of it.
-fn state(random: &mut Random) -> ([Vector; 10], [Vector; 10], [f64; 10]) {
+fn state(random: &mut Random) -> State<10> {
     let shear = Matrix::identity() + Matrix::from_fn(|_, _| 0.2 * random.unit());
     let nodes = NODES.map(|x| shear * Vector::from(x) + random.vector() * 0.04);
     let map = Matrix::identity() + Matrix::from_fn(|_, _| 0.15 * random.unit());
@@ -116,54 +112,22 @@ fn gauss_points_integrate_the_third_degree_and_no_further() {
     assert_eq!(Parent::<10>::PLACES, NODES);
 }
 
-fn all_derivatives<F: Field>(
-    field: F,
-    electric: Option<Dielectric>,
-    potentials: fn([f64; 10]) -> F::Potentials<10>,
-) {
-    let mut random = Random(11);
-    let n = if electric.is_some() { 40 } else { 30 };
-    for volume in [Volume::Pointwise, Volume::Mean].repeat(STATES) {
-        let law = law(volume, field);
-        let (nodes, x, phi) = state(&mut random);
-        let (w, w_phi): ([Vector; 10], [f64; 10]) = (
-            std::array::from_fn(|_| random.vector()),
-            std::array::from_fn(|_| random.unit()),
-        );
-        let shape = ElementGeometry::new(&nodes).unwrap();
-        let naive = Naive {
-            mu: law.shear_modulus,
-            lambda: law.lame_lambda,
-            electric,
-            volume,
-            points: gauss(&nodes),
-        };
-        let list = |x: &[Vector; 10], phi: &[f64; 10]| -> Vec<f64> {
-            let x = x.iter().flat_map(|x| [x.x, x.y, x.z]);
-            x.chain(*phi).take(n).collect()
-        };
-        let (plain, along) =
-            naive.derivatives(&list(&x, &phi), &list(&w, &w_phi), |_| Number::from(0.0));
-        let (phi, w_phi) = (potentials(phi), potentials(w_phi));
-        let (mut local, mut rate) = (Local::default(), Local::default());
-        let at = NodeState::new(&shape, &x, &phi);
-        law.tangent(&at, &mut local);
-        close_flat("tangent", &flat(&local), &plain);
-        close("energy", &[law.energy(&at)], &[plain.value]);
-        law.third(&at.along(&w, &w_phi), &mut local, &mut rate);
-        close_flat("third, plain", &flat(&local), &plain);
-        close_flat("third, along", &flat(&rate), &along);
+fn kind() -> Kind<10> {
+    Kind {
+        random: Random(11),
+        state,
+        gauss,
     }
 }
 
 #[test]
 fn derivatives_of_a_passive_law() {
-    all_derivatives(Passive, None, |_| ());
+    all_derivatives(kind(), Passive, None, |_| ());
 }
 
 #[test]
 fn derivatives_of_a_dielectric_law() {
-    all_derivatives(DIELECTRIC, Some(DIELECTRIC), |phi| phi);
+    all_derivatives(kind(), DIELECTRIC, Some(DIELECTRIC), |phi| phi);
 }
 
 /// Places and weights of a midpoint rule with `n` cells along each axis of the parent cell, extrapolated once.

@@ -1,5 +1,6 @@
-//! Stability under following loads: the damped motion B q̇ = −K q about a state, with a stiffness K without symmetry and
-//! B of the scales of the coordinates, returns where all eigenvalues of K v = μ B v have positive real parts.
+//! Stability under following loads.
+//!
+//! The damped motion B q̇ = −K q about a state, with a stiffness K without symmetry and B of the scales of the coordinates, returns where all eigenvalues of K v = μ B v have positive real parts.
 //!
 //! Where the symmetric part S of K is positive definite they have. Otherwise τ > 0 makes S + τ B so; then the eigenvalues θ = 1/(μ + τ) of
 //! (K + τ B)⁻¹ B that belong to growing motions are beyond all others, and Arnoldi's method finds them first.

@@ -6,7 +6,6 @@ use super::contents::{
 use crate::math::refuse;
 use crate::mesh::Mesh;
 use crate::mesh::error::{ElementName, MeshError, MeshPlace};
-use crate::mesh::tetrahedron::raised;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Nodes of elements with so many each.
@@ -62,12 +61,9 @@ impl Contents {
                     .for_each(|nodes| nodes.swap(8, 9));
             }
             _ => {
-                let (raised, edges) = raised(&elements(&solid, &index), mesh.nodes.len());
-                mesh.tetrahedra = raised;
-                for [a, b] in edges {
-                    middles.insert([a, b], mesh.nodes.len());
-                    mesh.nodes.push(0.5 * (mesh.nodes[a] + mesh.nodes[b]));
-                }
+                let first = mesh.nodes.len();
+                let edges = mesh.raise(&elements(&solid, &index)).into_iter();
+                middles.extend(edges.zip(first..));
             }
         }
         mesh.sets = self

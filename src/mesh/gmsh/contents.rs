@@ -211,7 +211,7 @@ pub(super) fn quoted(text: &str) -> String {
 pub(super) const HEXAHEDRON: usize = 5;
 pub(super) const LINEAR_TETRAHEDRON: usize = 4;
 pub(super) const TETRAHEDRON: usize = 11;
-/// They in messages.
+/// Words for them in messages.
 pub(super) const VOLUMES: &str =
     "8-node hexahedra (type 5), or tetrahedra of 4 or 10 nodes (types 4 and 11)";
 

@@ -29,7 +29,8 @@ const SECTION: &str = "a section such as $Nodes";
 ///
 /// Physical volumes become regions in the order of their numbers, elements of none become the region [`UNGROUPED`], the
 /// last one. Physical surfaces, curves and points become sets; what has no name is called `volume_7`, `surface_7`,
-/// `curve_7` or `point_7` by its number, and groups of one name are one set. Nodes that no volume uses are dropped. Linear tetrahedra get a node in the middle of each edge, which is in the sets of both ends.
+/// `curve_7` or `point_7` by its number, and groups of one name are one set. Nodes that no volume uses are dropped.
+/// Linear tetrahedra get a node in the middle of each edge, which is in the sets that have the edge.
 ///
 /// # Panics
 ///

@@ -117,8 +117,7 @@ impl SolidBlock {
 
     /// Vectors of the nodes of an element.
     pub fn nodes<const NODES: usize>(&self, element: usize) -> [usize; NODES] {
-        let nodes = self.solid.mesh.element(element);
-        std::array::from_fn(|i| self.vectors[nodes[i]])
+        self.of_nodes(element, &self.vectors)
     }
 
     /// Entries of a list by node, of the nodes of an element.
