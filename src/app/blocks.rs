@@ -73,7 +73,7 @@ impl BlockSize {
         let potentials: BTreeSet<usize> = scalars.filter(|s| all.contains(s)).collect();
         Self {
             nodes: block.solid.mesh.nodes.len(),
-            elements: block.shapes.len(),
+            elements: block.solid.mesh.element_count(),
             unknowns: block.vectors.iter().map(coordinates).sum(),
             potentials: potentials.len(),
         }

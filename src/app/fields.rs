@@ -51,7 +51,7 @@ pub(super) fn largest_nominal_field(
     let each = model.solids.iter().flat_map(|block| {
         let places = block.places(&state.here.x);
         let potentials = block.potentials(&state.scalars);
-        let elements = (0..block.shapes.len()).filter(|&e| block.is_dielectric[e]);
+        let elements = (0..block.solid.mesh.element_count()).filter(|&e| block.is_dielectric[e]);
         let field = move |e: usize| {
             let fields = block.fields(e, &places, &potentials);
             fields.reference_electric_field.norm() * 1e3
@@ -131,7 +131,7 @@ fn grid<'m>(model: &'m Model, number: usize, state: &SolidState) -> Unstructured
         }
         fields
     };
-    let fields: Vec<Fields> = (0..block.shapes.len()).map(fields).collect();
+    let fields: Vec<Fields> = (0..block.solid.mesh.element_count()).map(fields).collect();
     UnstructuredGrid {
         points: places.iter().map(|x| x * 1e-3).collect(),
         cells: mesh.elements().collect(),

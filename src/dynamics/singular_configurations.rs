@@ -95,16 +95,18 @@ fn block_at_limit(block: &SolidBlock, x: &[Vector], part: f64) -> Option<String>
         return None;
     }
     let strain = |element: usize, limit: f64| {
-        let points = (0..block.shapes[element].weights().len()).map(|g| {
+        let [points, _] = block.strains();
+        let points = (0..points).map(|g| {
             let gradient = block.deformation(element, g, x);
             gradient.norm_squared() * gradient.determinant().powf(-2.0 / 3.0) - 3.0
         });
         (points.fold(f64::NEG_INFINITY, f64::max), limit)
     };
-    let elements = (0..block.shapes.len()).filter_map(|e| match block.material(e).law? {
-        ElasticLaw::Gent { limit } => Some(strain(e, limit)),
-        _ => None,
-    });
+    let elements =
+        (0..block.solid.mesh.element_count()).filter_map(|e| match block.material(e).law? {
+            ElasticLaw::Gent { limit } => Some(strain(e, limit)),
+            _ => None,
+        });
     let (strain, limit) = elements.max_by(|a, b| (a.0 / a.1).total_cmp(&(b.0 / b.1)))?;
     let name = &block.solid.name;
     (strain >= (1.0 - part) * limit).then(|| format!(

@@ -29,6 +29,7 @@ mod lanes;
 mod law;
 mod local;
 mod number;
+mod sheet;
 mod variations;
 mod viscosity;
 
@@ -41,4 +42,5 @@ pub use geometry::{ElementGeometry, Inverted};
 pub use isochoric::{ElementLaw, IsochoricLaw};
 pub use law::{Dielectric, ElectricDerivatives, Field, Passive, Volume};
 pub use local::{BranchLocal, COORDINATES, Local};
+pub use sheet::{SHEET_POINTS, SheetPoint, sheet_masses};
 pub use viscosity::{Viscosity, ViscousContraction, ViscousLocal};

@@ -1,21 +1,37 @@
-//! Laws of elasticity of a muscle: its energy as a function of its squared stretch.
+//! Laws of elasticity of a muscle and of a membrane: energies as functions of its squared stretch, or of those in its plane.
 //!
 //! An incompressible muscle of the stretch Λ has the principal stretches Λ, Λ^(−1/2), Λ^(−1/2), so that with I = Λ²
 //!
 //! ```text
 //! I₁ = I + 2/√I,    I₂ = 2√I + 1/I,    Σ λᵃ = I^(a/2) + 2 I^(−a/4).
 //! ```
+//!
+//! An incompressible [membrane](crate::energy::ElasticMembrane) has, with I = λ₁² + λ₂², D = λ₁²λ₂² and c = I/(2√D),
+//!
+//! ```text
+//! I₁ = I + 1/D,    Σ λᵃ = 2 D^(a/4) y(c) + D^(−a/2),    y(c) = cosh(a/2 arccosh c),
+//! ```
+//!
+//! of which y is smooth at c = 1, where both stretches are one.
 
-use crate::energy::Coefficient;
+use crate::energy::{Coefficient, OfPlane};
 use crate::math::{Fault, Jet, Key, Number, refuse};
 use nalgebra::{SVector, Vector1};
 use std::f64::consts::PI;
 use std::fmt::Debug;
 
 /// A law of elasticity, the neo-Hookean one or another.
-pub trait Elasticity<T = f64>: Copy + Debug + Send + Sync + 'static {
+pub trait Elasticity<T: Number = f64>: Copy + Debug + Send + Sync + 'static {
     /// Energy in mJ of the volume V₀ in mm³ with the shear modulus μ in MPa as a function of I: value and three derivatives.
     fn of_squared_stretch(&self, shear_modulus: T, volume: T, i: T) -> [T; 4];
+
+    /// Energy of a unit of volume of a membrane in MPa, as a function of I and D.
+    fn of_plane<const ORDER: usize>(
+        &self,
+        shear_modulus: T,
+        i: OfPlane<ORDER, T>,
+        d: OfPlane<ORDER, T>,
+    ) -> OfPlane<ORDER, T>;
 }
 
 /// A law of elasticity whose constants are functions of free parameters.
@@ -59,6 +75,15 @@ impl<T: Number> Elasticity<T> for NeoHooke {
             c.scaled(1.5) * s * r * r,
             c.scaled(-3.75) * s * r * r * r,
         ]
+    }
+
+    fn of_plane<const ORDER: usize>(
+        &self,
+        shear_modulus: T,
+        i: OfPlane<ORDER, T>,
+        d: OfPlane<ORDER, T>,
+    ) -> OfPlane<ORDER, T> {
+        (i + d.recip()).shifted(-3.0) * shear_modulus.scaled(0.5)
     }
 }
 
@@ -191,31 +216,76 @@ impl ElasticLaw {
     }
 }
 
-/// The energy for μ = 1 of Σ(λᵃ − 1) for two exponents, of which the second has the share s.
-fn of_powers<T: Number>(i: &OfI<T>, exponents: [T; 2], share: T) -> OfI<T> {
-    let of = |exponent: T, share: T| {
-        let sum = power(i, exponent.scaled(0.5)) + power(i, exponent.scaled(-0.25)).scaled(2.0);
-        sum.shifted(-3.0) * share.scaled(2.0).over(exponent * exponent)
-    };
-    of(exponents[0], T::one() - share) + of(exponents[1], share)
-}
-
-/// A function of I.
-type OfI<T> = Jet<1, 3, T>;
-
-/// `Iⁿ`.
-fn power<T: Number>(i: &OfI<T>, n: T) -> OfI<T> {
-    let (r, p) = (i.value.recip(), i.value.powf(n));
+/// `fⁿ`.
+fn power<const M: usize, const ORDER: usize, T: Number>(
+    f: &Jet<M, ORDER, T>,
+    n: T,
+) -> Jet<M, ORDER, T> {
+    let (r, p) = (f.value.recip(), f.value.powf(n));
     let (first, second) = (n * p * r, n * n.shifted(-1.0) * p * r * r);
-    i.map([p, first, second, n.shifted(-2.0) * second * r])
+    f.map([p, first, second, n.shifted(-2.0) * second * r])
 }
 
-impl<T: Number> Elasticity<T> for ElasticLaw<T> {
-    fn of_squared_stretch(&self, shear_modulus: T, volume: T, i: T) -> [T; 4] {
-        let i = OfI::argument(0, &Vector1::new(i), &SVector::repeat(T::one()));
-        let strain = || (i + i.sqrt().recip().scaled(2.0)).shifted(-3.0);
+/// Terms of the series of y(c) up to c = 1.5, after which they are below rounding.
+const TERMS: usize = 40;
+
+/// y(c) = cosh(ν arccosh c) and three derivatives, by the series of `₂F₁(−ν, ν; ½; (1 − c)/2)` near one and by `(c² − 1) y″ + c y′ = ν² y`
+/// elsewhere.
+fn mean_of_powers<T: Number>(nu: T, c: T) -> [T; 4] {
+    let z = c.shifted(-1.0).scaled(-0.5);
+    if z.real().abs() > 0.25 {
+        let square = (c * c).shifted(-1.0);
+        let root = square.sqrt();
+        let [grown, shrunk] = [nu, -nu].map(|nu| ((c + root).ln() * nu).exp());
+        let y = (grown + shrunk).scaled(0.5);
+        let first = nu * (grown - shrunk).scaled(0.5).over(root);
+        let second = (nu * nu * y - c * first).over(square);
+        let third = ((nu * nu).shifted(-1.0) * first - c.scaled(3.0) * second).over(square);
+        return [y, first, second, third];
+    }
+    // By Horner's rule from the last coefficient on, each from the one before.
+    let mut coefficients = [T::one(); TERMS];
+    for next in 1..TERMS {
+        let n = (next - 1) as f64;
+        let ratio = (-(nu * nu))
+            .shifted(n * n)
+            .scaled(1.0 / ((n + 0.5) * (n + 1.0)));
+        coefficients[next] = coefficients[next - 1] * ratio;
+    }
+    let mut sums = [T::zero(); 4];
+    for coefficient in coefficients.into_iter().rev() {
+        for order in (1..4).rev() {
+            sums[order] = sums[order] * z + sums[order - 1];
+        }
+        sums[0] = sums[0] * z + coefficient;
+    }
+    // The sums are derivatives by z over factorials, and dz/dc = −½.
+    let [y, first, second, third] = sums;
+    [
+        y,
+        first.scaled(-0.5),
+        second.scaled(0.5),
+        third.scaled(-0.75),
+    ]
+}
+
+impl<T: Number> ElasticLaw<T> {
+    /// Energy of a unit of volume by I₁ − 3 and by Σ λᵃ − 3 of an exponent a.
+    fn density<const M: usize, const ORDER: usize>(
+        &self,
+        shear_modulus: T,
+        strain: impl Fn() -> Jet<M, ORDER, T>,
+        powers: impl Fn(T) -> Jet<M, ORDER, T>,
+    ) -> Jet<M, ORDER, T> {
+        // The energy for μ = 1 of Σ(λᵃ − 1) for two exponents, of which the second has the share s.
+        let of_powers = |exponents: [T; 2], share: T| {
+            let of = |exponent: T, share: T| {
+                powers(exponent) * share.scaled(2.0).over(exponent * exponent)
+            };
+            of(exponents[0], T::one() - share) + of(exponents[1], share)
+        };
         let half = shear_modulus.scaled(0.5);
-        let density = match *self {
+        match *self {
             Self::Gent { limit } => {
                 let left = (strain() * T::of(-1.0).over(limit)).shifted(1.0);
                 // The derivatives exist beyond the limit, where there is no energy.
@@ -227,16 +297,42 @@ impl<T: Number> Elasticity<T> for ElasticLaw<T> {
                 left.ln() * (-half * limit)
             }
             Self::MooneyRivlin { share } => {
-                of_powers(&i, [2.0, -2.0].map(T::of), share) * shear_modulus
+                of_powers([2.0, -2.0].map(T::of), share) * shear_modulus
             }
             Self::Yeoh { c2, c3 } => {
                 let strain = strain();
                 let more = strain.squared() * c2 + strain.powi(3) * c3;
                 strain * half + more
             }
-            Self::Ogden { exponents, share } => of_powers(&i, exponents, share) * shear_modulus,
+            Self::Ogden { exponents, share } => of_powers(exponents, share) * shear_modulus,
+        }
+    }
+}
+
+impl<T: Number> Elasticity<T> for ElasticLaw<T> {
+    fn of_squared_stretch(&self, shear_modulus: T, volume: T, i: T) -> [T; 4] {
+        let i = Jet::<1, 3, T>::argument(0, &Vector1::new(i), &SVector::repeat(T::one()));
+        let strain = || (i + i.sqrt().recip().scaled(2.0)).shifted(-3.0);
+        let powers = |a: T| {
+            (power(&i, a.scaled(0.5)) + power(&i, a.scaled(-0.25)).scaled(2.0)).shifted(-3.0)
         };
-        let jet = density * volume;
+        let jet = self.density(shear_modulus, strain, powers) * volume;
         [jet.value, jet.gradient.x, jet.hessian.x, jet.hessian_w.x]
+    }
+
+    fn of_plane<const ORDER: usize>(
+        &self,
+        shear_modulus: T,
+        i: OfPlane<ORDER, T>,
+        d: OfPlane<ORDER, T>,
+    ) -> OfPlane<ORDER, T> {
+        let strain = || (i + d.recip()).shifted(-3.0);
+        let powers = |a: T| {
+            let c = i * d.sqrt().recip().scaled(0.5);
+            let mean = c.map(mean_of_powers(a.scaled(0.5), c.value));
+            let in_plane = (power(&d, a.scaled(0.25)) * mean).scaled(2.0);
+            (in_plane + power(&d, a.scaled(-0.5))).shifted(-3.0)
+        };
+        self.density(shear_modulus, strain, powers)
     }
 }

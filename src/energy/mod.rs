@@ -15,6 +15,7 @@ mod kinetic;
 mod law;
 mod limit;
 mod maxwell_damper;
+mod membrane;
 mod muscle;
 mod of_square;
 mod one_sided;
@@ -47,6 +48,9 @@ pub use limit::{
     ProjectionStep, SquaredDistance, SquaredField,
 };
 pub use maxwell_damper::{DamperDerivatives, MaxwellCell, MaxwellDamper};
+pub use membrane::{
+    ChargedMembrane, DielectricMembrane, ElasticMembrane, MaxwellMembrane, OfPlane, ViscousMembrane,
+};
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
 pub use of_square::OfSquare;
 pub use one_sided::{Cable, CoordinateStops};

@@ -10,6 +10,8 @@ pub enum Cell {
     Hexahedron,
     /// Quadratic, with 10 nodes.
     Tetrahedron,
+    /// Of a membrane, quadratic, with 6 nodes.
+    Triangle,
 }
 
 impl Cell {
@@ -21,6 +23,7 @@ impl Cell {
         match nodes.len() {
             8 => Self::Hexahedron,
             10 => Self::Tetrahedron,
+            6 => Self::Triangle,
             count => unreachable!("no element has {count} nodes"),
         }
     }
@@ -30,6 +33,7 @@ impl Cell {
         match self {
             Self::Hexahedron => "hexahedron",
             Self::Tetrahedron => "tetrahedron",
+            Self::Triangle => "triangle",
         }
     }
 
@@ -38,15 +42,18 @@ impl Cell {
         match self {
             Self::Hexahedron => "hexahedra",
             Self::Tetrahedron => "tetrahedra",
+            Self::Triangle => "triangles",
         }
     }
 
     /// Places among the nodes of an element of those of each face: its corners, counter-clockwise seen from outside, then the middles of its
-    /// edges from the first corner on, where it has any.
+    /// edges from the first corner on, where it has any. A triangle is its own face, seen from
+    /// the side where a pressure inflates it: along its normal.
     pub fn faces(self) -> &'static [&'static [usize]] {
         match self {
             Self::Hexahedron => &hexahedron::FACES,
             Self::Tetrahedron => &tetrahedron::FACES,
+            Self::Triangle => &[&[0, 2, 1, 5, 4, 3]],
         }
     }
 
@@ -55,6 +62,7 @@ impl Cell {
         match self {
             Self::Hexahedron => 12,
             Self::Tetrahedron => 24,
+            Self::Triangle => 22,
         }
     }
 }

@@ -114,15 +114,17 @@ impl Mesh {
             .collect()
     }
 
-    /// Adds quadratic tetrahedra with straight edges that have these corners, with a node in the middle of each edge; returns the ends of the edges
-    /// in the order of these nodes.
-    pub(super) fn raise(&mut self, corners: &[[usize; 4]]) -> Vec<[usize; 2]> {
-        let (tetrahedra, edges) = raised(corners, self.nodes.len());
-        self.tetrahedra.extend(tetrahedra);
+    /// Quadratic tetrahedra or triangles with straight edges that have these corners: adds a node in the middle of each edge. Returns them, and the
+    /// ends of the edges in the order of these nodes.
+    pub(super) fn raise<const CORNERS: usize, const NODES: usize>(
+        &mut self,
+        corners: &[[usize; CORNERS]],
+    ) -> (Vec<[usize; NODES]>, Vec<[usize; 2]>) {
+        let (raised, edges) = raised(corners, self.nodes.len());
         for [a, b] in &edges {
             self.nodes.push(0.5 * (self.nodes[*a] + self.nodes[*b]));
         }
-        edges
+        (raised, edges)
     }
 
     /// Elements of each connected part, ascending, parts by their first element; elements that share a node are connected.

@@ -80,8 +80,8 @@ impl Grid {
             regions: vec![0; hexahedra.len()],
             region_names: vec!["box".to_owned()],
             hexahedra,
-            tetrahedra: Vec::new(),
             sets: sides([n_x, n_y, n_z]),
+            ..Mesh::default()
         }
     }
 }
@@ -186,7 +186,8 @@ impl Mesh {
             .flat_map(|nodes| IN_HEXAHEDRON.map(|corners| corners.map(|corner| nodes[corner])));
         let corners: Vec<_> = parts.collect();
         let first = self.nodes.len();
-        let edges = self.raise(&corners);
+        let (tetrahedra, edges) = self.raise(&corners);
+        self.tetrahedra = tetrahedra;
         for set in self.sets.values_mut() {
             let mut is_in = vec![false; first];
             set.iter().for_each(|&node| is_in[node] = true);

@@ -1,6 +1,6 @@
-//! Meshes of hexahedra or tetrahedra: nodes, elements, named node sets. Geometry only: no material, no unknown.
+//! Meshes of hexahedra, of tetrahedra, or of the triangles of a membrane: nodes, elements, named node sets. Geometry only: no material, no unknown.
 //!
-//! Meshes come from planes ([`grid`]) or from a file ([`gmsh`]); [`Mesh::check`] says whether elements can be integrated.
+//! Meshes come from planes ([`grid`]), from shapes of surfaces ([`surface`]) or from a file ([`gmsh`]); [`Mesh::check`] says whether elements can be integrated.
 //! [`triangulated`]: surfaces of triangles; [`enclosed`]: solids within them.
 
 pub mod cell;
@@ -12,6 +12,7 @@ pub mod grid;
 mod hexahedron;
 pub mod interpolation;
 pub mod quality;
+pub mod surface;
 mod tetrahedron;
 pub mod triangulated;
 
@@ -31,6 +32,8 @@ pub struct Mesh {
     /// Nodes of each quadratic tetrahedron: three corners, counter-clockwise seen from the fourth, then it, then the middles of the edges
     /// 01, 12, 02, 03, 13 and 23, which is the order of VTK.
     pub tetrahedra: Vec<[usize; 10]>,
+    /// Nodes of each quadratic triangle of a membrane: three corners, then the middles of the edges 01, 12 and 02, which is the order of VTK.
+    pub triangles: Vec<[usize; 6]>,
     /// Region (a part with one material) of each element, an index into `region_names`.
     pub regions: Vec<usize>,
     /// Names of the regions.
@@ -42,29 +45,32 @@ pub struct Mesh {
 impl Mesh {
     /// Number of elements.
     pub fn element_count(&self) -> usize {
-        self.hexahedra.len() + self.tetrahedra.len()
+        self.hexahedra.len() + self.tetrahedra.len() + self.triangles.len()
     }
 
     /// Nodes of each element.
     pub fn elements(&self) -> impl Iterator<Item = &[usize]> + Clone {
         let hexahedra = self.hexahedra.iter().map(<[usize; 8]>::as_slice);
         let tetrahedra = self.tetrahedra.iter().map(<[usize; 10]>::as_slice);
-        hexahedra.chain(tetrahedra)
+        let triangles = self.triangles.iter().map(<[usize; 6]>::as_slice);
+        hexahedra.chain(tetrahedra).chain(triangles)
     }
 
     /// Nodes of an element.
     pub fn element(&self, number: usize) -> &[usize] {
-        match number.checked_sub(self.hexahedra.len()) {
-            None => &self.hexahedra[number],
-            Some(number) => &self.tetrahedra[number],
+        match self.cell() {
+            Cell::Hexahedron => &self.hexahedra[number],
+            Cell::Tetrahedron => &self.tetrahedra[number],
+            Cell::Triangle => &self.triangles[number],
         }
     }
 
     /// The kind of its elements.
     pub fn cell(&self) -> Cell {
-        match self.tetrahedra.is_empty() {
-            true => Cell::Hexahedron,
-            false => Cell::Tetrahedron,
+        match (self.tetrahedra.is_empty(), self.triangles.is_empty()) {
+            (true, true) => Cell::Hexahedron,
+            (false, _) => Cell::Tetrahedron,
+            (true, false) => Cell::Triangle,
         }
     }
 }

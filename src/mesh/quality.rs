@@ -25,8 +25,13 @@ impl Mesh {
     /// One of these does not hold.
     pub fn check(&self) -> Result<(), MeshError> {
         let kind = self.cell().name();
-        refuse!(unless self.hexahedra.is_empty() || self.tetrahedra.is_empty(), MeshPlace::Whole;
-            found "hexahedra and tetrahedra", expected "elements of one kind");
+        let kinds = [
+            self.hexahedra.len(),
+            self.tetrahedra.len(),
+            self.triangles.len(),
+        ];
+        refuse!(if kinds.iter().filter(|&&count| count > 0).count() > 1, MeshPlace::Whole;
+            found "elements of several kinds", expected "elements of one kind");
         self.check_elements(|number| ElementName::Number(kind, number))?;
         let (regions, elements) = (self.regions.len(), self.element_count());
         refuse!(if regions != elements, MeshPlace::Whole;
@@ -101,6 +106,7 @@ impl Mesh {
         let (ratio, place) = match Cell::of(nodes) {
             Cell::Hexahedron => smallest_ratio::<8>(&places),
             Cell::Tetrahedron => smallest_ratio::<10>(&places),
+            Cell::Triangle => smallest_ratio_of_areas(&places),
         };
         if ratio > LIMIT {
             return None;
@@ -117,6 +123,7 @@ impl Mesh {
             Cell::Tetrahedron => {
                 "three corners counter-clockwise seen from the fourth, then it, then the middles of the edges"
             }
+            Cell::Triangle => "three corners, then the middles of the edges",
         };
         let expected = format!(
             "a Jacobian determinant that is positive, more than 1e-6 of that of a brick with the same edges, \
@@ -131,10 +138,7 @@ fn smallest_ratio<const NODES: usize>(places: &[Vector3<f64>]) -> (f64, String)
 where
     Parent<NODES>: Element<NODES>,
 {
-    // Differences in units of the largest one: neither large nor small lengths leave the range of numbers.
-    let edges: Vec<_> = places.iter().map(|x| x - places[0]).collect();
-    let size = edges.iter().map(Vector3::amax).fold(0.0, f64::max);
-    let scaled: Vec<_> = edges.iter().map(|edge| edge / size).collect();
+    let scaled = scaled(places);
     let mut smallest = (f64::INFINITY, String::new());
     let nodes = Parent::<NODES>::PLACES;
     let points = Parent::<NODES>::POINTS.map(|(at, _)| at);
@@ -149,6 +153,41 @@ where
         }
     }
     smallest
+}
+
+/// Differences from the first node in units of the largest one: neither large nor small lengths leave the range of numbers.
+fn scaled(places: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
+    let edges: Vec<_> = places.iter().map(|x| x - places[0]).collect();
+    let size = edges.iter().map(Vector3::amax).fold(0.0, f64::max);
+    edges.iter().map(|edge| edge / size).collect()
+}
+
+/// The smallest ratio of the area of a quadratic triangle and that of a rectangle with edges as long as `∂x/∂ξ`, over its nodes, and where.
+fn smallest_ratio_of_areas(places: &[Vector3<f64>]) -> (f64, String) {
+    let scaled = scaled(places);
+    let ratio = |at: &[f64; 2]| {
+        let slopes: [[f64; 2]; 6] = Parent::<6>::slopes(at);
+        let [a, b] = [0, 1].map(|k| {
+            let terms = scaled.iter().zip(&slopes).map(|(x, slope)| x * slope[k]);
+            let tangent: Vector3<f64> = terms.sum();
+            tangent / tangent.norm().max(LIMIT)
+        });
+        let ratio = a.cross(&b).norm();
+        if ratio.is_nan() { 0.0 } else { ratio }
+    };
+    let nodes = [
+        [0.0, 0.0],
+        [1.0, 0.0],
+        [0.0, 1.0],
+        [0.5, 0.0],
+        [0.5, 0.5],
+        [0.0, 0.5],
+    ];
+    let ratios = nodes.iter().map(ratio).enumerate();
+    let (node, ratio) = ratios
+        .min_by(|a, b| a.1.total_cmp(&b.1))
+        .unwrap_or((0, 0.0));
+    (ratio, format!("node {node}"))
 }
 
 /// `det(∂x/∂ξ) / Π_k |∂x/∂ξ_k|` with x in units of the element's size.

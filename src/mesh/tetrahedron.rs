@@ -123,9 +123,12 @@ impl Interpolation<2, 6> for Parent<6> {
     }
 }
 
-/// Nodes of quadratic tetrahedra with straight edges from those of linear ones: the middle of each edge is a node, numbered from `next` on.
-/// Middles are found again by the ends of their edges in ascending order.
-pub(super) fn raised(corners: &[[usize; 4]], next: usize) -> (Vec<[usize; 10]>, Vec<[usize; 2]>) {
+/// Nodes of quadratic tetrahedra or triangles with straight edges from those of linear ones: the middle of each edge is a node, numbered from
+/// `next` on. Middles are found again by the ends of their edges in ascending order.
+pub(super) fn raised<const CORNERS: usize, const NODES: usize>(
+    corners: &[[usize; CORNERS]],
+    next: usize,
+) -> (Vec<[usize; NODES]>, Vec<[usize; 2]>) {
     let (mut found, mut edges) = (rustc_hash::FxHashMap::default(), Vec::new());
     let mut middle = |[a, b]: [usize; 2]| {
         let ends = [a.min(b), a.max(b)];
@@ -134,11 +137,10 @@ pub(super) fn raised(corners: &[[usize; 4]], next: usize) -> (Vec<[usize; 10]>, 
             next + edges.len() - 1
         })
     };
-    let mut element = |corners: &[usize; 4]| {
-        let middles = EDGES.map(|ends| middle(ends.map(|end| corners[end])));
-        std::array::from_fn(|i| match i.checked_sub(4) {
+    let mut element = |corners: &[usize; CORNERS]| {
+        std::array::from_fn(|i| match i.checked_sub(CORNERS) {
             None => corners[i],
-            Some(edge) => middles[edge],
+            Some(edge) => middle(EDGES[edge].map(|end| corners[end])),
         })
     };
     (corners.iter().map(&mut element).collect(), edges)

@@ -376,6 +376,7 @@ fn block(source: usize, muscle: &Muscle, discretisation: &Discretisation) -> Sol
             glue("z_max", muscle.to.body),
         ],
         velocities: Vec::new(),
+        thickness: None,
         prestretch: stretches.map(|[across, along]| {
             frame * Matrix::from_diagonal(&[across, across, along].into()) * frame.transpose()
         }),

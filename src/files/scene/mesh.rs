@@ -1,4 +1,4 @@
-//! Conversion of a box or a Gmsh file of a scene file to a mesh.
+//! Conversion of a box, a surface or a Gmsh file of a scene file to a mesh.
 
 use nalgebra::Vector3;
 
@@ -6,6 +6,7 @@ use crate::files::json::error::{Result, SceneError};
 use crate::files::json::scope::{Scope, refuse, the_one};
 use crate::files::scene::point::vector;
 use crate::files::scene::spec_solids::{DivisionSpec, ElementSpec, GridSpec, LayerSpec, SolidSpec};
+use crate::files::scene::surface::surface;
 use crate::mesh::cell::Cell;
 use crate::mesh::error::{MeshError, MeshPlace};
 use crate::mesh::grid::Grid;
@@ -29,6 +30,12 @@ pub(crate) fn meshed(spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed> {
             refuse!(if let Some(unit) = &spec.unit, scope.key("unit");
                 found unit, expected "no such key: the lengths of a box have units of their own");
             (boxed(cuboid, spec.element, place)?, place.clone())
+        };
+        "surface" surface |place, of| {
+            refuse!(if let Some(unit) = &spec.unit, scope.key("unit");
+                found unit, expected "no such key: the lengths of a surface have units of their own");
+            let mesh = surface(of, place)?;
+            (Meshed { mesh, planes: None }, place.clone())
         };
         "mesh" mesh |place, path| (from_file(path, spec, scope)?, place.clone());
     );
@@ -75,10 +82,7 @@ fn boxed(spec: &GridSpec, element: Option<ElementSpec>, scope: &Scope<'_>) -> Re
     let scope = scope.key("elements");
     let mut layers = [Vec::new(), Vec::new(), Vec::new()];
     for (axis, division) in spec.elements.iter().enumerate() {
-        layers[axis] = match division {
-            DivisionSpec::Equal(elements) => vec![(size[axis], *elements)],
-            DivisionSpec::Layers(written) => layered(written, &scope.index(axis))?,
-        };
+        layers[axis] = self::layers(division, size[axis], &scope.index(axis))?;
     }
     let count = |layers: &Vec<(f64, usize)>| layers.iter().map(|layer| layer.1).sum();
     let elements = check_elements(layers.each_ref().map(count));
@@ -94,7 +98,13 @@ fn boxed(spec: &GridSpec, element: Option<ElementSpec>, scope: &Scope<'_>) -> Re
         mesh_mistake(&error, &scope.index(axis))
     })?;
     let mut mesh = grid.mesh();
-    name_regions(&mut mesh, spec, &grid.planes, &scope)?;
+    // Elements count along x first, then y, then z.
+    let cells = |axis: usize| grid.planes[axis].len() - 1;
+    let cell = |element: usize, axis: usize| {
+        let stride: usize = (0..axis).map(cells).product();
+        element / stride % cells(axis)
+    };
+    name_regions(&mut mesh, &spec.elements, cell, &scope)?;
     let element = ElementKind::from(element.unwrap_or_default());
     if element.cell() == Cell::Tetrahedron {
         mesh = mesh.in_tetrahedra();
@@ -103,6 +113,18 @@ fn boxed(spec: &GridSpec, element: Option<ElementSpec>, scope: &Scope<'_>) -> Re
         mesh,
         planes: Some(grid.planes),
     })
+}
+
+/// Thickness in mm and elements of the layers of a division of a length.
+pub(super) fn layers(
+    division: &DivisionSpec,
+    length: f64,
+    scope: &Scope<'_>,
+) -> Result<Vec<(f64, usize)>> {
+    match division {
+        DivisionSpec::Equal(elements) => Ok(vec![(length, *elements)]),
+        DivisionSpec::Layers(written) => layered(written, scope),
+    }
 }
 
 /// Thickness in mm and elements of the layers along one direction.
@@ -115,15 +137,15 @@ fn layered(layers: &[LayerSpec], scope: &Scope<'_>) -> Result<Vec<(f64, usize)>>
     })
 }
 
-/// Gives each element the region of its layer, in the one direction that names regions.
-fn name_regions(
+/// Gives each element the region of its layer, in the one direction that names regions; `cell` is the number of an element along a direction.
+pub(super) fn name_regions(
     mesh: &mut Mesh,
-    spec: &GridSpec,
-    planes: &[Vec<f64>; 3],
+    divisions: &[DivisionSpec],
+    cell: impl Fn(usize, usize) -> usize,
     scope: &Scope<'_>,
 ) -> Result<()> {
     let mut named = None;
-    for (axis, division) in spec.elements.iter().enumerate() {
+    for (axis, division) in divisions.iter().enumerate() {
         let DivisionSpec::Layers(layers) = division else {
             continue;
         };
@@ -151,11 +173,8 @@ fn name_regions(
         });
         of_element.extend(std::iter::repeat_n(region, layer.elements));
     }
-    // Elements count along x first, then y, then z.
-    let elements = |axis: usize| planes[axis].len() - 1;
-    let stride: usize = (0..axis).map(elements).product();
     for (element, region) in mesh.regions.iter_mut().enumerate() {
-        *region = of_element[element / stride % elements(axis)];
+        *region = of_element[cell(element, axis)];
     }
     mesh.region_names = names;
     Ok(())

@@ -2,7 +2,7 @@
 //!
 //! - `build`: the scene; `body`, `joint`, `material`, `muscle`, `spring`, `shape`, `contact`, `load`: its parts, each described and
 //!   converted in one file.
-//! - `solid`, `mesh`, `electrodes`, `nodes`: elastic solids; `names`: resolution of names.
+//! - `solid`, `mesh`, `surface`, `electrodes`, `nodes`: elastic solids; `names`: resolution of names.
 //! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
 
@@ -25,4 +25,5 @@ pub(crate) mod solid;
 pub mod spec;
 pub mod spec_solids;
 pub mod spring;
+mod surface;
 pub(crate) mod trunk;

@@ -4,7 +4,7 @@ use crate::files::json::scope::{Result, Scope, list, refuse, the_one};
 use crate::files::problem::at::ELECTRIC_KEYS;
 use crate::files::scene::electrodes::electrodes;
 use crate::files::scene::mesh::{Meshed, meshed};
-use crate::files::scene::names::{find_body, find_compressible};
+use crate::files::scene::names::{find_body, find_compressible, find_material};
 use crate::files::scene::nodes::{extent, face, nodes, place};
 use crate::files::scene::point::vector;
 use crate::files::scene::spec_solids::{
@@ -27,7 +27,10 @@ pub(crate) fn solid(
     let by_region = by_region(spec, &meshed.mesh, scope)?;
     let mut of_region = Vec::new();
     for (name, place) in &by_region {
-        of_region.push(find_compressible(name, materials, place)?);
+        of_region.push(match spec.thickness {
+            None => find_compressible(name, materials, place)?,
+            Some(_) => find_material(name, materials, place)?,
+        });
     }
     let electrodes = electrodes(spec, &meshed, scope)?;
     let passive = of_region
@@ -37,6 +40,7 @@ pub(crate) fn solid(
     refuse!(if let Some((name, place)) = passive.map(|region| &by_region[region]), place;
         found format!("{name:?}, which has no electric term, in a block with electrodes"),
         expected ELECTRIC_KEYS);
+    let thickness = scope.optional("thickness", &spec.thickness, Scope::positive)?;
     let Meshed { mesh, .. } = meshed;
     let element = spec
         .element
@@ -65,6 +69,7 @@ pub(crate) fn solid(
         supports,
         glued,
         velocities,
+        thickness,
         prestretch: prestretch(spec.prestretch.as_ref(), &scope.key("prestretch"))?,
     })
 }

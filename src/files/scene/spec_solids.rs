@@ -15,9 +15,10 @@ use crate::files::units::quantity::{
 use crate::model::system::{Circuit, ElementKind};
 
 objects! {
-    /// An elastic block of finite elements: a `box` or a `mesh`, of one `material` or of `materials` by region.
+    /// An elastic block of finite elements: a `box` or a `mesh`, of one `material` or of `materials` by region; or a membrane with a `thickness`: a
+    /// `surface` or a `mesh` of triangles or quadrangles.
     ///
-    /// Faces are `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max` of a box, and physical groups of a mesh.
+    /// Faces are `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max` of a box, the edges of a surface, and physical groups of a mesh.
     pub struct SolidSpec {
         /// Unique name.
         pub name: String,
@@ -28,13 +29,18 @@ objects! {
         /// Box with edges along the axes of the ground frame.
         #[serde(rename = "box")]
         pub cuboid: Option<GridSpec>,
+        /// Surface of a membrane.
+        pub surface: Option<SurfaceSpec>,
+        /// Thickness of a membrane before its prestretch, SI unit m.
+        pub thickness: Option<Quantity<Length>>,
         /// Path of a Gmsh file, relative to this file.
         pub mesh: Option<String>,
         /// Length of a unit of the Gmsh file, SI unit m; 1 m where not written.
         pub unit: Option<Quantity<Length>>,
         /// Kind of its elements; `hex8` where not written, `tet10` of a mesh of tetrahedra.
         pub element: Option<ElementSpec>,
-        /// Electrodes; without any the block has no potential.
+        /// Electrodes; without any the block has no potential. Those of a membrane lie on both sides: their potential is the voltage across it, of
+        /// the triangles that they cover.
         pub electrodes?: Vec<ElectrodeSpec>,
         /// Electrodes between the layers of a stack and at its ends, alternately grounded and driven.
         pub stack: Option<StackSpec>,
@@ -80,6 +86,68 @@ objects! {
         Tet10,
         /// The same with one dilatation an element.
         Tet10P2p0 = Tet10P2P0,
+        /// Quadratic triangle of an incompressible membrane in plane stress.
+        Membrane,
+    }
+
+    /// Surface of a membrane: exactly one of `rectangle`, `disc`, `annulus`, `tube` and `sphere`. `surface` is the set of all its nodes.
+    pub struct SurfaceSpec {
+        /// Centre, or of a tube that of its lower end, SI unit m; the origin where not written.
+        pub centre: Option<Point>,
+        /// Direction of the normal, or of the axis of a tube; z where not written.
+        pub axis: Option<AxisName>,
+        /// Rectangle around the centre; edges `x_min`, `x_max`, `y_min`, `y_max` along its own directions, those that follow the axis.
+        pub rectangle: Option<RectangleSpec>,
+        /// Disc; edge `edge`.
+        pub disc: Option<DiscSpec>,
+        /// Ring; edges `inner` and `outer`.
+        pub annulus: Option<AnnulusSpec>,
+        /// Tube, open at both ends `z_min` and `z_max`.
+        pub tube: Option<TubeSpec>,
+        /// Sphere.
+        pub sphere: Option<SphereSpec>,
+    }
+
+    /// A rectangle of triangles.
+    pub struct RectangleSpec {
+        /// Lengths of both edges, SI unit m.
+        pub size: [Quantity<Length>; 2],
+        /// Elements along both: numbers, or lists of layers.
+        pub elements: [DivisionSpec; 2],
+    }
+
+    /// A disc of triangles.
+    pub struct DiscSpec {
+        /// Radius, SI unit m.
+        pub radius: Quantity<Length>,
+        /// Elements from the centre to the edge: a number, or a list of layers.
+        pub elements: DivisionSpec,
+    }
+
+    /// A ring of triangles.
+    pub struct AnnulusSpec {
+        /// Inner and outer radius, SI unit m.
+        pub radii: [Quantity<Length>; 2],
+        /// Elements from the inner edge to the outer one, a number or a list of layers, and around.
+        pub elements: [DivisionSpec; 2],
+    }
+
+    /// A tube of triangles.
+    pub struct TubeSpec {
+        /// Radius, SI unit m.
+        pub radius: Quantity<Length>,
+        /// Length, SI unit m.
+        pub length: Quantity<Length>,
+        /// Elements around, and along the axis, a number or a list of layers.
+        pub elements: [DivisionSpec; 2],
+    }
+
+    /// A sphere of triangles.
+    pub struct SphereSpec {
+        /// Radius, SI unit m.
+        pub radius: Quantity<Length>,
+        /// Elements along a quarter of a great circle.
+        pub elements: usize,
     }
 
     /// A box cut into hexahedra, each of them into six tetrahedra where the kind of its elements is one of these.

@@ -1,7 +1,9 @@
-//! Conversion of the contents of a file to a mesh: used nodes, regions of physical volumes, sets of the other physical groups.
+//! Conversion of the contents of a file to a mesh: used nodes, regions of physical volumes, sets of the other physical groups. Where there is no
+//! volume, surfaces are a membrane of triangles, whose regions are sets too.
 
 use super::contents::{
-    Contents, Element, Group, HEXAHEDRON, TETRAHEDRON, UNGROUPED, VOLUMES, named,
+    Contents, Element, Group, HEXAHEDRON, LINEAR_TRIANGLE, QUADRANGLE, QUADRATIC_QUADRANGLE,
+    TETRAHEDRON, TRIANGLE, UNGROUPED, VOLUMES, named,
 };
 use crate::math::refuse;
 use crate::mesh::Mesh;
@@ -17,6 +19,44 @@ fn elements<const NODES: usize>(
     solid.iter().map(nodes).collect()
 }
 
+/// Elements that go together: triangles of either kind are made of quadrangles too.
+fn family(element: &Element) -> usize {
+    match element.kind {
+        QUADRANGLE => LINEAR_TRIANGLE,
+        QUADRATIC_QUADRANGLE => TRIANGLE,
+        kind => kind,
+    }
+}
+
+/// Places among the nodes of a surface element of those of the triangles that it consists of.
+fn triangles(element: &Element) -> &'static [&'static [usize]] {
+    match element.kind {
+        QUADRANGLE => &[&[0, 1, 2], &[0, 2, 3]],
+        QUADRATIC_QUADRANGLE => &[&[0, 1, 2, 4, 5, 8], &[0, 2, 3, 8, 6, 7]],
+        _ => &[&[0, 1, 2, 3, 4, 5]],
+    }
+}
+
+/// Nodes of the triangles of surface elements, each of which is there as often as it has triangles.
+fn in_triangles<const NODES: usize>(
+    solid: &[&Element],
+    index: &BTreeMap<u64, usize>,
+) -> Vec<[usize; NODES]> {
+    let mut before = None;
+    let mut part = 0;
+    let nodes = |element: &&Element| {
+        part = if before == Some(element.number) {
+            part + 1
+        } else {
+            0
+        };
+        before = Some(element.number);
+        let places = triangles(element)[part];
+        std::array::from_fn(|i| index[&element.nodes[places[i]]])
+    };
+    solid.iter().map(nodes).collect()
+}
+
 impl Contents {
     pub(super) fn assemble(mut self, file: &str, unit: f64) -> Result<Mesh, MeshError> {
         let at = |line: usize| MeshPlace::Line(file.to_owned(), line);
@@ -27,22 +67,37 @@ impl Contents {
                 found format!("node {node} in element {}", element.number),
                 expected "a node that $Nodes lists");
         }
-        let (solid, others): (Vec<_>, Vec<_>) =
-            self.elements.iter().partition(|e| e.dimension == 3);
-        refuse!(if solid.is_empty(), at(self.line);
-            found format!("no volume among {} elements", self.elements.len()),
+        let dimension = self.elements.iter().map(|e| e.dimension).max();
+        let is_solid = |element: &&Element| Some(element.dimension) == dimension;
+        let (mut solid, mut others): (Vec<_>, Vec<_>) = self.elements.iter().partition(is_solid);
+        refuse!(unless matches!(dimension, Some(2 | 3)), at(self.line);
+            found format!("no volume and no surface among {} elements", self.elements.len()),
             expected VOLUMES);
-        let other = solid.iter().find(|element| element.kind != solid[0].kind);
+        let other = solid.iter().find(|other| family(other) != family(solid[0]));
         refuse!(if let Some(other) = other, at(other.line);
             found format!("{} beside {}", named(other.kind), named(solid[0].kind)),
             expected "elements of one kind: a mesh of hexahedra, or one of tetrahedra");
+        if dimension == Some(2) {
+            others.extend(&solid);
+            // Triangles one after the other.
+            let parts = solid
+                .into_iter()
+                .flat_map(|e| triangles(e).iter().map(move |_| e));
+            solid = parts.collect();
+        }
         let used: BTreeSet<u64> = solid.iter().flat_map(|e| &e.nodes).copied().collect();
         let index: BTreeMap<u64, usize> = used.iter().enumerate().map(|(i, &n)| (n, i)).collect();
 
         let (regions, region_names) = self.regions(&solid).map_err(|element| {
-            let names: Vec<_> = element.groups.iter().map(|&g| self.name((3, g))).collect();
+            let groups = element.groups.iter();
+            let names: Vec<_> = groups.map(|&g| self.name((element.dimension, g))).collect();
             let found = format!("element {} in {}", element.number, names.join(" and "));
-            at(element.line).wrong(found, "each element in one physical volume")
+            let kind = if dimension == Some(3) {
+                "volume"
+            } else {
+                "surface"
+            };
+            at(element.line).wrong(found, format!("each element in one physical {kind}"))
         })?;
         let mut mesh = Mesh {
             nodes: used.iter().map(|node| self.nodes[node] * unit).collect(),
@@ -60,16 +115,27 @@ impl Contents {
                     .iter_mut()
                     .for_each(|nodes| nodes.swap(8, 9));
             }
+            TRIANGLE | QUADRATIC_QUADRANGLE => mesh.triangles = in_triangles(&solid, &index),
+            LINEAR_TRIANGLE | QUADRANGLE => {
+                let first = mesh.nodes.len();
+                let corners: Vec<[usize; 3]> = in_triangles(&solid, &index);
+                let (triangles, edges) = mesh.raise(&corners);
+                mesh.triangles = triangles;
+                middles.extend(edges.into_iter().zip(first..));
+            }
             _ => {
                 let first = mesh.nodes.len();
-                let edges = mesh.raise(&elements(&solid, &index)).into_iter();
-                middles.extend(edges.zip(first..));
+                let corners: Vec<[usize; 4]> = elements(&solid, &index);
+                let (tetrahedra, edges) = mesh.raise(&corners);
+                mesh.tetrahedra = tetrahedra;
+                middles.extend(edges.into_iter().zip(first..));
             }
         }
         mesh.sets = self
             .sets(&others, &index, &middles)
             .map_err(|(line, name)| {
-                let found = format!("no node of a volume in the physical group {name:?}");
+                let found =
+                    format!("no node of an element of the mesh in the physical group {name:?}");
                 at(line).wrong(found, "one node or more that is")
             })?;
         mesh.check_elements(|index| ElementName::File {
@@ -83,10 +149,11 @@ impl Contents {
     /// Region of each volume and the names of regions by the numbers of their groups, or a volume in two of them.
     fn regions<'a>(&self, solid: &[&'a Element]) -> Result<(Vec<usize>, Vec<String>), &'a Element> {
         let mut names: Vec<String> = Vec::new();
+        let dimension = solid.first().map_or(3, |element| element.dimension);
         let groups: BTreeSet<u64> = solid.iter().flat_map(|e| &e.groups).copied().collect();
         let mut region_of = BTreeMap::new();
         for group in groups {
-            let name = self.name((3, group));
+            let name = self.name((dimension, group));
             let known = names.iter().position(|n| *n == name);
             region_of.insert(
                 group,

@@ -214,6 +214,11 @@ pub(super) const TETRAHEDRON: usize = 11;
 /// Words for them in messages.
 pub(super) const VOLUMES: &str =
     "8-node hexahedra (type 5), or tetrahedra of 4 or 10 nodes (types 4 and 11)";
+/// Types of surfaces, which are membranes where there is no volume.
+pub(super) const LINEAR_TRIANGLE: usize = 2;
+pub(super) const QUADRANGLE: usize = 3;
+pub(super) const TRIANGLE: usize = 9;
+pub(super) const QUADRATIC_QUADRANGLE: usize = 10;
 
 const KINDS: [&str; 19] = [
     "2-node line",
@@ -243,15 +248,16 @@ pub(super) fn shape(kind: usize, line: &Line<'_>) -> Result<(usize, usize), Mesh
         15 => Ok((0, 1)),
         1 => Ok((1, 2)),
         8 => Ok((1, 3)),
-        2 => Ok((2, 3)),
-        9 => Ok((2, 6)),
-        3 => Ok((2, 4)),
+        LINEAR_TRIANGLE => Ok((2, 3)),
+        TRIANGLE => Ok((2, 6)),
+        QUADRANGLE => Ok((2, 4)),
+        QUADRATIC_QUADRANGLE => Ok((2, 9)),
         LINEAR_TETRAHEDRON => Ok((3, 4)),
         TETRAHEDRON => Ok((3, 10)),
         HEXAHEDRON => Ok((3, 8)),
         _ => {
             let expected = format!(
-                "{VOLUMES}, bounded by quadrangles (type 3), triangles (types 2 and 9), lines (types 1 and 8) and points \
+                "{VOLUMES}, bounded by quadrangles (types 3 and 10), triangles (types 2 and 9), lines (types 1 and 8) and points \
                  (type 15): mesh with transfinite or extruded, recombined volumes of first order, or with tetrahedra"
             );
             Err(line.wrong(named(kind), expected))

@@ -2,8 +2,6 @@
 //!
 //! They have no mass. Each has an equation: a force that depends on it, or a constraint.
 
-use crate::element::COORDINATES;
-use crate::functional::POINTS;
 use crate::kinematics::{MaterialVector, Vectors};
 use crate::model::analysis::{Analysis, Coordinates};
 use crate::model::components::LoadPlace;
@@ -87,8 +85,9 @@ impl Internal {
     /// Those of the viscous strains of the branches of an element, branch by branch and point by point.
     fn of_element(block: usize, of: &SolidBlock, element: usize) -> impl Iterator<Item = Self> {
         let branches = 0..of.material(element).maxwell.list().len();
-        let points = branches.flat_map(|branch| (0..POINTS).map(move |point| (branch, point)));
-        let all = points.flat_map(|at| (0..COORDINATES).map(move |component| (at, component)));
+        let [points, coordinates] = of.strains();
+        let points = branches.flat_map(move |branch| (0..points).map(move |point| (branch, point)));
+        let all = points.flat_map(move |at| (0..coordinates).map(move |component| (at, component)));
         all.map(move |((branch, point), component)| {
             let name = format!(
                 "viscous strain {} of branch {} at point {point} of element {element} of {}",
@@ -187,7 +186,7 @@ impl Internals {
         let moving = blocks.list.iter().enumerate();
         let moving = moving.filter(|(_, block)| analysis.of_motion && !block.is_immobile);
         for (b, block) in moving {
-            let elements = 0..block.shapes.len();
+            let elements = 0..block.solid.mesh.element_count();
             for e in elements.filter(|&e| !block.material(e).maxwell.list().is_empty()) {
                 of_elements.insert((b, e), list.len());
                 list.extend(Internal::of_element(b, block, e));
@@ -226,20 +225,23 @@ impl Internals {
         own.next().map(|(_, vector)| vector)
     }
 
-    /// The vectors (z₁, z₂, ·) and (a, b, c) of the viscous strain of a branch at each Gauss point of an element of a block; `None` where
+    /// The vectors (z₁, z₂, ·) and (a, b, c), or (a, ·, ·) in a membrane, of the viscous strain of a branch at each Gauss point of an element of a block; `None` where
     /// nothing calls for it.
     pub(crate) fn strains(
         &self,
         block: usize,
         element: usize,
         branch: usize,
-    ) -> Option<[[MaterialVector; 2]; POINTS]> {
+        of: &SolidBlock,
+    ) -> Option<Vec<[MaterialVector; 2]>> {
         let first = self.first + self.of_elements.get(&(block, element))?;
-        let at = |point: usize| first + COORDINATES * (POINTS * branch + point);
-        Some(std::array::from_fn(|point| {
-            let [start, end] = [at(point), at(point + 1)];
-            [start..start + 2, start + 2..end].map(MaterialVector::coordinates)
-        }))
+        let [points, coordinates] = of.strains();
+        let vectors = |point: usize| {
+            let start = first + coordinates * (points * branch + point);
+            let parts = [start..start + 2, start + 2..start + coordinates];
+            parts.map(MaterialVector::coordinates)
+        };
+        Some((0..points).map(vectors).collect())
     }
 
     /// All of them, each with the vector that has it in its first component.

@@ -4,6 +4,7 @@ pub(super) mod contact_reading;
 pub(super) mod internal;
 pub(super) mod joint_sections;
 pub(super) mod node_grids;
+pub(super) mod sheet;
 pub(super) mod solid_block;
 pub(super) mod solids;
 pub(super) mod states;

@@ -1,8 +1,8 @@
-//! An elastic block in the model: vectors and potentials of its nodes, laws of its elements, charges of its electrodes.
+//! An elastic block or a membrane in the model: vectors and potentials of its nodes, laws of its elements, charges of its electrodes.
 
 use crate::element::{
     Dielectric, Elastomer, ElementEnergy, ElementGeometry, Fields, Inverted, IsochoricLaw, Local,
-    NodeState, Passive, Viscosity, Volume,
+    NodeState, Passive, SHEET_POINTS, SheetPoint, Viscosity, Volume,
 };
 use crate::energy::NeoHooke;
 use crate::functional::ScalarArg;
@@ -25,8 +25,10 @@ pub struct SolidBlock {
     pub terminals: Vec<Option<ScalarArg>>,
     /// Part of the scene that it is.
     pub owner: Owner,
-    /// Geometry of each element.
+    /// Geometry of each element of a block.
     pub shapes: Vec<Shape>,
+    /// Points of each triangle of a membrane.
+    pub sheets: Vec<[SheetPoint; SHEET_POINTS]>,
     /// For each element, true if a field reaches it.
     pub is_dielectric: Vec<bool>,
     /// True if all nodes rest on the ground, and there is no field.
@@ -62,6 +64,7 @@ impl Shape {
         Ok(match Cell::of(nodes) {
             Cell::Hexahedron => Self::Hexahedron(geometry(nodes, place)?),
             Cell::Tetrahedron => Self::Tetrahedron(geometry(nodes, place)?),
+            Cell::Triangle => unreachable!("a membrane has points"),
         })
     }
 
@@ -121,7 +124,11 @@ impl SolidBlock {
     }
 
     /// Entries of a list by node, of the nodes of an element.
-    fn of_nodes<T: Copy, const NODES: usize>(&self, element: usize, of: &[T]) -> [T; NODES] {
+    pub(super) fn of_nodes<T: Copy, const NODES: usize>(
+        &self,
+        element: usize,
+        of: &[T],
+    ) -> [T; NODES] {
         let nodes = self.solid.mesh.element(element);
         std::array::from_fn(|i| of[nodes[i]])
     }
@@ -143,6 +150,12 @@ impl SolidBlock {
             Parent<NODES>: Element<NODES>,
         {
             ElementGeometry::loads(&of.unstretched::<NODES>(element)).to_vec()
+        }
+        if self.solid.thickness.is_some() {
+            return self
+                .sheet_masses(element)
+                .map(|row| row.iter().sum())
+                .to_vec();
         }
         of_shape!(&self.shapes[element], shape => of(self, element, shape))
     }
@@ -172,8 +185,14 @@ impl SolidBlock {
         ElementGeometry::central_gradients(&self.unstretched(element))
     }
 
-    /// Deformation gradient at a Gauss point of an element at vectors x.
+    /// Deformation gradient at a Gauss point of an element at vectors x; of a membrane along its directions and its normal.
     pub(crate) fn deformation(&self, element: usize, point: usize, x: &[Vector]) -> Matrix {
+        if let Some(points) = self.sheets.get(element) {
+            let nodes = self.nodes(element).map(|v: usize| x[v]);
+            let [a, b] = points[point].tangents(&nodes);
+            let across = a.cross(&b);
+            return Matrix::from_columns(&[a, b, across / across.norm_squared()]);
+        }
         of_shape!(&self.shapes[element], shape => {
             shape.gradient_of(&self.nodes(element).map(|v| x[v]), point)
         })
@@ -249,6 +268,9 @@ impl SolidBlock {
 
     /// Fields of an element without its viscosity, with the nodes at `places` in mm under `potentials` in V.
     pub fn fields(&self, element: usize, places: &[Vector], potentials: &[f64]) -> Fields {
+        if !self.sheets.is_empty() {
+            return self.sheet_fields(element, places, potentials);
+        }
         of_shape!(&self.shapes[element], shape => {
             let x = self.of_nodes(element, places);
             let isochoric = self.isochoric(element);
@@ -279,6 +301,9 @@ impl SolidBlock {
         let law = Viscosity {
             viscosity: self.material(element).viscosity?,
         };
+        if !self.sheets.is_empty() {
+            return Some(self.sheet_viscous_stress(element, [places, velocities], law.viscosity));
+        }
         Some(of_shape!(&self.shapes[element], shape => {
             let [x, v] = [places, velocities].map(|of| self.of_nodes(element, of));
             law.stress(shape, &x, &v)
@@ -305,7 +330,10 @@ impl SolidBlock {
         let (places, potentials) = (self.places(x), self.potentials(scalars));
         let mut charges = vec![0.0; places.len()];
         for (e, nodes) in self.solid.mesh.elements().enumerate() {
-            if self.is_dielectric[e] {
+            if self.is_dielectric[e] && !self.sheets.is_empty() {
+                // All nodes are on one electrode.
+                charges[nodes[0]] += self.sheet_charge(e, &places, &potentials);
+            } else if self.is_dielectric[e] {
                 let law = self.dielectric(e);
                 of_shape!(&self.shapes[e], shape => {
                     let (at, phi) = (self.of_nodes(e, &places), self.of_nodes(e, &potentials));

@@ -4,12 +4,11 @@
 //! coordinates. Only nodes that an electric field reaches have a potential.
 
 use crate::coordinates::NodePlace;
-use crate::element::Inverted;
+use crate::element::{Inverted, SHEET_POINTS, SheetPoint};
 use crate::functional::ScalarArg;
 use crate::kinematics::{Carrier, MaterialVector, Pose, Vectors};
 use crate::model::analysis::{Analysis, ModelError};
-use crate::model::layout::solid_block::Shape;
-use crate::model::layout::solid_block::{Owner, SolidBlock};
+use crate::model::layout::solid_block::{Owner, Shape, SolidBlock};
 use crate::model::layout::variables::{Variable, Variables};
 use crate::model::system::electrode_circuits::ElectrodeCircuit;
 use crate::model::system::{Glue, Material, Potential, Solid, System};
@@ -60,14 +59,15 @@ impl Solids {
         let of_scene = (0..system.solids.len()).map(Owner::Block);
         let owners = of_scene.chain(system.meshed_muscles().map(Owner::Muscle));
         for ((index, solid), owner) in solids.into_iter().enumerate().zip(owners) {
-            let shapes = shapes(&solid)?;
+            let (shapes, sheets) = (shapes(&solid)?, sheets(&solid)?);
             let places = out.places(index, &solid, reference, ties, vectors);
             let charged = field_extent::charged(system, index, &analysis.zero_inputs);
             let is_dielectric = field_extent::dielectric(&solid, &charged);
             let of_motion = analysis.of_motion;
             let (terminals, own) =
                 terminals(&solid, &is_dielectric, unit, system, of_motion, variables);
-            let charge = unit_of_charge(&solid, &shapes);
+            let volume = volume(&solid, &shapes, &sheets);
+            let charge = unit_of_charge(&solid, volume);
             out.circuits
                 .extend(own.into_iter().filter_map(|(source, potential)| {
                     Some(ElectrodeCircuit {
@@ -90,6 +90,7 @@ impl Solids {
                 owner,
                 terminals,
                 shapes,
+                sheets,
                 is_dielectric,
                 is_immobile,
             });
@@ -221,9 +222,8 @@ fn terminals(
 }
 
 /// √(μ ε) V^⅔ in mC of the volume V of a block: a charge whose field balances the elasticity.
-fn unit_of_charge(solid: &Solid, shapes: &[Shape]) -> f64 {
-    let volumes = shapes.iter().flat_map(|shape| shape.weights());
-    let area = volumes.sum::<f64>().powf(2.0 / 3.0);
+fn unit_of_charge(solid: &Solid, volume: f64) -> f64 {
+    let area = volume.powf(2.0 / 3.0);
     let of = |m: &Material| {
         let electric = m.electric?;
         Some((m.shear_modulus * electric.permittivity).sqrt() * area)
@@ -246,13 +246,39 @@ fn unit(solids: &[Solid]) -> f64 {
     if largest > 0.0 { largest } else { 1.0 }
 }
 
+/// Volume in mm³.
+fn volume(solid: &Solid, shapes: &[Shape], sheets: &[[SheetPoint; SHEET_POINTS]]) -> f64 {
+    let volumes = shapes.iter().flat_map(|shape| shape.weights());
+    let areas = sheets.iter().flatten().map(|point| point.area);
+    volumes.sum::<f64>() + areas.sum::<f64>() * solid.thickness.unwrap_or(0.0)
+}
+
+fn inverted(solid: &Solid, element: usize) -> impl FnOnce(Inverted) -> ModelError {
+    move |_| ModelError::Inverted {
+        solid: solid.name.clone(),
+        element,
+    }
+}
+
+/// Geometries of the elements of a block.
 fn shapes(solid: &Solid) -> Result<Vec<Shape>, ModelError> {
+    let elements = solid.mesh.elements().enumerate();
     let shape = |(element, nodes): (usize, &[usize])| {
         let shape = Shape::new(nodes, |node| solid.unstretched(node));
-        shape.map_err(|Inverted { .. }| ModelError::Inverted {
-            solid: solid.name.clone(),
-            element,
-        })
+        shape.map_err(inverted(solid, element))
     };
-    solid.mesh.elements().enumerate().map(shape).collect()
+    elements
+        .filter(|_| solid.thickness.is_none())
+        .map(shape)
+        .collect()
+}
+
+/// Points of the triangles of a membrane.
+fn sheets(solid: &Solid) -> Result<Vec<[SheetPoint; SHEET_POINTS]>, ModelError> {
+    let triangles = solid.mesh.triangles.iter().enumerate();
+    let points = |(element, nodes): (usize, &[usize; 6])| {
+        let points = SheetPoint::all(&nodes.map(|node| solid.unstretched(node)));
+        points.map_err(inverted(solid, element))
+    };
+    triangles.map(points).collect()
 }

@@ -395,6 +395,16 @@ impl Solid {
         refuse!(unless kind.cell() == cell, Key("element");
             found format!("a kind of {}", kind.cell().names()),
             expected format!("one of {}, of which the mesh consists", cell.names()));
+        match (self.thickness, cell) {
+            (None, Cell::Triangle) => refuse!(if true, Key("thickness");
+                found "a mesh of triangles without a thickness",
+                expected "the thickness of a membrane without stress"),
+            (Some(thickness), Cell::Triangle) => positive("thickness", thickness)?,
+            (Some(_), _) => refuse!(if true, Key("thickness");
+                found format!("the thickness of a mesh of {}", cell.names()),
+                expected "no such key: membranes of triangles have a thickness"),
+            (None, _) => {}
+        }
         let of_electrodes = self.electrodes.iter().map(|e| &e.nodes);
         let mut sets = of_electrodes.chain(self.supports.iter().map(|s| &s.nodes));
         let count = self.mesh.nodes.len();
@@ -411,7 +421,11 @@ impl Solid {
         }
         self.check_prestretch()?;
         for material in &self.materials {
-            let checked = material.check().and_then(|()| material.check_of_elements());
+            let of_elements = || match cell {
+                Cell::Triangle => Ok(()),
+                _ => material.check_of_elements(),
+            };
+            let checked = material.check().and_then(|()| of_elements());
             checked.map_err(|fault| fault.under("material"))?;
         }
         Ok(())

@@ -265,7 +265,7 @@ pub struct Discretisation {
     pub first_side: Option<Vector3<f64>>,
 }
 
-/// An elastic block of finite elements.
+/// An elastic block of finite elements, or a membrane.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Solid {
     /// Unique name.
@@ -284,6 +284,8 @@ pub struct Solid {
     pub glued: Vec<Glue>,
     /// Velocity of each node at the start in mm/ms; empty at rest.
     pub velocities: Vec<Vector3<f64>>,
+    /// Thickness of a membrane without stress in mm; `None` of a block.
+    pub thickness: Option<f64>,
     /// Stretch U of the reference configuration x = U X of the places X without stress, symmetric; `None` where it has none.
     pub prestretch: Option<Matrix3<f64>>,
 }
@@ -300,6 +302,8 @@ pub enum ElementKind {
     Tet10,
     /// The same with one dilatation an element (P2P0), against volumetric locking.
     Tet10P2P0,
+    /// Quadratic triangle of an incompressible membrane in plane stress with three points.
+    Membrane,
 }
 
 impl ElementKind {
@@ -308,6 +312,7 @@ impl ElementKind {
         match mesh.cell() {
             Cell::Hexahedron => Self::Hex8,
             Cell::Tetrahedron => Self::Tet10,
+            Cell::Triangle => Self::Membrane,
         }
     }
 
@@ -316,6 +321,7 @@ impl ElementKind {
         match self {
             Self::Hex8 | Self::Hex8Q1P0 => Cell::Hexahedron,
             Self::Tet10 | Self::Tet10P2P0 => Cell::Tetrahedron,
+            Self::Membrane => Cell::Triangle,
         }
     }
 

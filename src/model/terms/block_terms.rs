@@ -33,7 +33,14 @@ impl Solids {
         self.numbered().map(|(_, block, e)| (block, e))
     }
 
-    /// The same, with the number of the block.
+    /// The same with triangles of membranes.
+    fn parts(&self) -> impl Iterator<Item = (&SolidBlock, usize)> + '_ {
+        let elements = |block: &SolidBlock| 0..block.solid.mesh.element_count();
+        self.moving()
+            .flat_map(move |block| elements(block).map(move |e| (block, e)))
+    }
+
+    /// The same as [`elements`](Self::elements), with the number of the block.
     pub(crate) fn numbered(&self) -> impl Iterator<Item = (usize, &SolidBlock, usize)> + '_ {
         let blocks = self.list.iter().enumerate();
         blocks
@@ -47,6 +54,7 @@ impl Solids {
         self.add_elements(terms);
         self.add_viscosity(terms);
         self.add_branches(internals, terms);
+        self.add_sheets(internals, terms);
         if !self.list.is_empty() {
             let [elasticity, electroelasticity] = NEO_HOOKEAN;
             let all = [INERTIA, elasticity, electroelasticity, VISCOSITY];
@@ -150,7 +158,7 @@ impl Solids {
             terms.without(INERTIA, "no elastic block names a density");
         }
         let mut sought = Vec::new();
-        for (block, e) in self.elements() {
+        for (block, e) in self.parts() {
             let is_new = sought.iter().all(|(_, known)| *known != of(block, e));
             if is_new && read.is_sought(of(block, e)) {
                 sought.push((block, of(block, e)));
@@ -197,10 +205,14 @@ impl Solids {
     /// Entries of the consistent mass matrix in g by pairs of vectors, of which the first is not the later one.
     fn masses(&self, density: Density<'_>) -> BTreeMap<[usize; 2], f64> {
         let mut sums = BTreeMap::new();
-        for (c, e) in self.elements() {
+        for (c, e) in self.parts() {
             let Some(density) = density(c, e) else {
                 continue;
             };
+            if !c.sheets.is_empty() {
+                add_pairs(c.nodes(e), c.sheet_masses(e), density, &mut sums);
+                continue;
+            }
             of_shape!(&c.shapes[e], shape => add_masses(c, e, shape, density, &mut sums));
         }
         sums
@@ -228,11 +240,20 @@ fn add_masses<const NODES: usize>(
 ) where
     Parent<NODES>: Interpolated<NODES>,
 {
-    let nodes: [usize; NODES] = c.nodes(e);
     let mass = ElementGeometry::mass(&c.unstretched::<NODES>(e), density);
+    add_pairs(c.nodes(e), mass, 1.0, sums);
+}
+
+/// Adds the entries of a matrix by pairs of vectors times a factor.
+fn add_pairs<const NODES: usize>(
+    nodes: [usize; NODES],
+    mass: [[f64; NODES]; NODES],
+    factor: f64,
+    sums: &mut BTreeMap<[usize; 2], f64>,
+) {
     for (i, &a) in nodes.iter().enumerate() {
         for (j, &b) in nodes.iter().enumerate().filter(|&(_, &b)| a <= b) {
-            *sums.entry([a, b]).or_default() += mass[i][j];
+            *sums.entry([a, b]).or_default() += factor * mass[i][j];
         }
     }
 }
@@ -244,7 +265,7 @@ impl Solids {
     pub(crate) fn add_branches(&self, internals: &Internals, terms: &mut Terms<'_>) {
         for (b, c, e) in self.numbered() {
             for (branch, constants) in c.material(e).maxwell.list().iter().enumerate() {
-                if let Some(strains) = internals.strains(b, e, branch) {
+                if let Some(strains) = internals.strains(b, e, branch, c) {
                     add_branch(c, e, branch, constants, strains, terms);
                 } else if terms.is_instantaneous() {
                     let call = Call(MAXWELL[0], UNRELAXED, &c.solid.name);
@@ -271,7 +292,7 @@ fn add_branch(
     e: usize,
     branch: usize,
     constants: &MaxwellBranch,
-    strains: [[MaterialVector; 2]; POINTS],
+    strains: Vec<[MaterialVector; 2]>,
     terms: &mut Terms<'_>,
 ) {
     let MaxwellBranch {
@@ -289,7 +310,11 @@ fn add_branch(
     let modulus = read.constant(of_modulus, shear_modulus);
     let both = &modulus * &read.constant(of_time, relaxation_time);
     let both = read.into_constant(both);
-    let strains = strains.map(|parts| parts.map(|part| terms.new_vector(part)));
+    let strains = strains
+        .into_iter()
+        .map(|parts| parts.map(|part| terms.new_vector(part)));
+    let strains: Vec<[usize; 2]> = strains.collect();
+    let strains: [[usize; 2]; POINTS] = std::array::from_fn(|point| strains[point]);
     for ([stretches, shears], volume) in strains.into_iter().zip(c.shapes[e].weights()) {
         let (stretched, sheared) = (mid(stretches), mid(shears));
         let rates = [rate(stretches), rate(shears)];
@@ -323,6 +348,9 @@ impl Model {
     ) -> Option<Matrix> {
         let of = &self.solids[block];
         let branches = of.material(element).maxwell.list();
+        if !of.sheets.is_empty() {
+            return self.sheet_branch_stress(block, element, at);
+        }
         if let Some(first) = self.internals.of_elements.get(&(block, element)) {
             let first = self.action.map.internal().start + first;
             let stress = |(branch, shear_modulus): (usize, f64)| {

@@ -49,7 +49,7 @@ pub(crate) fn charged(
 
 /// For each element, true if a field reaches it: its material has electric constants, and the dielectric part of the block that it
 /// belongs to touches electrodes of different voltages, or one and a `charged` node. Electrodes that are held at a voltage part a
-/// block; a floating one joins what it touches.
+/// block; a floating one joins what it touches. A triangle of a membrane has a field across it where one electrode covers it.
 pub(crate) fn dielectric(solid: &Solid, charged: &BTreeSet<usize>) -> Vec<bool> {
     let mesh = &solid.mesh;
     let is: Vec<bool> = mesh
@@ -57,6 +57,17 @@ pub(crate) fn dielectric(solid: &Solid, charged: &BTreeSet<usize>) -> Vec<bool> 
         .iter()
         .map(|&region| solid.materials[region].electric.is_some())
         .collect();
+    if solid.thickness.is_some() {
+        let covers = |nodes: &[usize]| {
+            let mut all = solid.electrodes.iter();
+            all.any(|e| nodes.iter().all(|node| e.nodes.binary_search(node).is_ok()))
+        };
+        return mesh
+            .elements()
+            .zip(is)
+            .map(|(nodes, is)| is && covers(nodes))
+            .collect();
+    }
     let mut held: HashMap<usize, Potential> = HashMap::new();
     for electrode in &solid.electrodes {
         for &node in &electrode.nodes {

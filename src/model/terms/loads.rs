@@ -155,7 +155,7 @@ impl Loaded<'_, '_> {
                 follows: true,
             } => match mesh.cell() {
                 Cell::Hexahedron => self.press::<4>(block, faces),
-                Cell::Tetrahedron => self.press::<6>(block, faces),
+                Cell::Tetrahedron | Cell::Triangle => self.press::<6>(block, faces),
             },
             BlockLoad::Charge(faces) => {
                 for (node, area) in mesh.areas_of(faces) {

@@ -8,6 +8,7 @@ pub(super) mod field_extent;
 pub(super) mod joint_constraints;
 pub(super) mod loads;
 pub(super) mod parametric_elements;
+mod sheet_terms;
 
 use crate::energy::{Coefficient, Gravity, KineticEnergy, Law};
 use crate::functional::{
@@ -53,7 +54,7 @@ impl Carriers<'_> {
 pub struct Terms<'a> {
     bodies: Carriers<'a>,
     gravity: Option<Vector>,
-    vectors: &'a mut Vectors,
+    pub(super) vectors: &'a mut Vectors,
     variables: &'a Variables,
     /// Vectors of the nodes of each elastic block.
     nodes: Vec<&'a [usize]>,
