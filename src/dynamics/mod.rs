@@ -7,6 +7,7 @@
 //! - `simulate`, `trajectory`, `observe`, `part_columns`, `momenta`, `energies`: step after step, recorded and observed, and resumed.
 //! - `resolution`: steps that are refused, and the error of those that are not; `singular_configurations`: places where laws end, and the end of
 //!   the first-order dielectric.
+//! - `wrinkles`: membranes that are compressed.
 //! - `exchange`: electrical energy from the sources and mechanical work of their muscles.
 //! - `state_space`: steps linearised by state and inputs; `independent`: coordinates of closed loops that determine the others; `loop_rates`: rates
 //!   of their joints, completed from those that are named, and changes of coordinates that constraints leave free.
@@ -34,6 +35,7 @@ mod stepper;
 mod tangent;
 pub mod trajectory;
 mod updates;
+mod wrinkles;
 
 pub use energies::{Energies, Work, energies};
 pub use equilibrium::{
@@ -62,3 +64,4 @@ pub use solving::{Drive, Inputs, Integrator, MultigridUse, Newton, Solving};
 pub use state_space::{LinearStep, Linearisation, StepInput, momentum_derivatives, step_inputs};
 pub use stepper::{Equations, Steps};
 pub use trajectory::{DiscreteTrajectory, Reading, StepState, StepperReport, TangentState};
+pub use wrinkles::{Wrinkle, wrinkles};

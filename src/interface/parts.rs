@@ -212,6 +212,7 @@ makers! {
     /// A solid of one material on a mesh.
     on(mesh: Mesh, material: &Material) = Self {
         materials: vec![*material; mesh.region_names.len()],
+        element: ElementKind::of_mesh(&mesh),
         mesh,
         ..Self::default()
     };
@@ -226,6 +227,8 @@ impl Solid {
 
 builder! {
     impl Solid;
+    /// Thickness of a membrane without stress in mm, whose mesh is one of triangles.
+    thickness(thickness: f64) |of| of.thickness = Some(thickness);
     /// Stretches along x, y, z before it was glued and held, by which the mesh differs from the solid without stress.
     prestretch(stretches: [f64; 3]) |of| of.prestretch = Some(Matrix::from_diagonal(&stretches.into()));
     /// Holds the nodes of a set of the mesh, such as `z_min`.

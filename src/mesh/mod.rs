@@ -1,11 +1,12 @@
 //! Meshes of hexahedra, of tetrahedra, or of the triangles of a membrane: nodes, elements, named node sets. Geometry only: no material, no unknown.
 //!
 //! Meshes come from planes ([`grid`]), from shapes of surfaces ([`surface`]) or from a file ([`gmsh`]); [`Mesh::check`] says whether elements can be integrated.
-//! [`triangulated`]: surfaces of triangles; [`enclosed`]: solids within them.
+//! [`footing`]: places on its surface; [`triangulated`]: surfaces of triangles; [`enclosed`]: solids within them.
 
 pub mod cell;
 pub mod enclosed;
 pub mod error;
+pub mod footing;
 pub mod geometry;
 pub mod gmsh;
 pub mod grid;

@@ -375,6 +375,7 @@ fn block(source: usize, muscle: &Muscle, discretisation: &Discretisation) -> Sol
             glue("z_min", muscle.from.body),
             glue("z_max", muscle.to.body),
         ],
+        tied: Vec::new(),
         velocities: Vec::new(),
         thickness: None,
         prestretch: stretches.map(|[across, along]| {

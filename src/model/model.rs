@@ -446,7 +446,8 @@ fn free_motion(
     let mut gram = nalgebra::Matrix6::<f64>::zeros();
     for &node in members {
         let VectorTerm { carrier, .. } = vectors[block.vectors[node]].terms[0];
-        let is_glued = block.solid.glued.iter().any(|g| g.nodes.contains(&node));
+        let is_tied = block.solid.tied.iter().any(|tie| tie.node == node);
+        let is_glued = is_tied || block.solid.glued.iter().any(|g| g.nodes.contains(&node));
         let held = match carrier {
             Carrier::Node(number) if !is_glued => nodes[number].free.map(|free| !free),
             _ => [true; 3],

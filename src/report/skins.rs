@@ -28,6 +28,8 @@ pub struct Skin {
     pub muscle: Option<usize>,
     /// True if potentials reach it.
     pub is_charged: bool,
+    /// True of a membrane, which is seen from both sides.
+    pub is_thin: bool,
     /// Corners of the faces, counter-clockwise seen from outside.
     pub quads: Vec<[usize; 4]>,
     /// For each corner of a face, true if the edge to the next one is an edge of the body, rather than of its elements.
@@ -150,6 +152,7 @@ impl Skin {
             name: block.solid.name.clone(),
             muscle,
             is_charged: block.terminals.iter().any(Option::is_some),
+            is_thin: block.solid.thickness.is_some(),
             sharp: sharp(&quads, &reference),
             quads,
             reference,
@@ -254,7 +257,7 @@ pub(super) enum Paint<'a> {
     },
 }
 
-/// Draws the faces that look at the viewer, far ones first, lit from the upper left.
+/// Draws the faces that look at the viewer, of a membrane all, far ones first, lit from the upper left.
 pub(super) fn draw_skin(
     canvas: &Canvas<'_>,
     view: &View,
@@ -266,8 +269,10 @@ pub(super) fn draw_skin(
     let mut faces = Vec::new();
     for (quad, sharp) in skin.quads.iter().zip(&skin.sharp) {
         let corners = quad.map(|corner| places[corner]);
-        let normal = normal(&corners);
-        if normal.dot(&view.toward) > 0.0 {
+        let outward = normal(&corners);
+        let faces_viewer = outward.dot(&view.toward) > 0.0;
+        if faces_viewer || skin.is_thin {
+            let normal = if faces_viewer { outward } else { -outward };
             let depth = corners.iter().map(|corner| view.depth(corner)).sum::<f64>();
             faces.push((depth, quad, sharp, corners, normal.normalize()));
         }

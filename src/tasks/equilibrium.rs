@@ -4,7 +4,7 @@ use crate::control::problem::AtRest;
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
     self, DiscreteTrajectory, Equilibrium, StabilityLoss, out_of_domain, out_of_range,
-    stable_equilibrium,
+    stable_equilibrium, wrinkles,
 };
 use crate::model::{Model, System};
 use crate::stop;
@@ -96,6 +96,8 @@ pub fn equilibrium(
     remarks.note("moved_marker", moved_markers(system));
     remarks.warn("singular_loops", model.loops.warning.clone());
     remarks.warn("outside_domain", warnings::domain_note(&outside, false));
+    let wrinkles = wrinkles(&model, &discrete);
+    remarks.warn("wrinkles", warnings::wrinkle_warning(&wrinkles, false));
     let beyond = out_of_range(&model, &discrete);
     let beyond = warnings::stretch_range_warning(&beyond, false);
     remarks.warn("outside_range", beyond);

@@ -4,7 +4,7 @@ use crate::control::problem::{Afterwards, Disturbed, FeedbackControl, Simulation
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
     DiscreteTrajectory, EnergyExchange, LocalError, local_error, out_of_domain, out_of_range,
-    short_touches,
+    short_touches, wrinkles,
 };
 use crate::math::significant;
 use crate::model::{Model, System};
@@ -116,6 +116,8 @@ impl SimulationResult {
         }
         remarks.note("step_divided", warnings::divided(task));
         remarks.warn("outside_domain", warnings::domain_note(&outside, true));
+        let wrinkles = wrinkles(model, discrete);
+        remarks.warn("wrinkles", warnings::wrinkle_warning(&wrinkles, true));
         let beyond = out_of_range(model, discrete);
         let beyond = warnings::stretch_range_warning(&beyond, true);
         remarks.warn("outside_range", beyond);

@@ -4,7 +4,7 @@ use crate::control::problem::{Control, ControlTask, Guess, MotionTask, SoughtHol
 use crate::control::{Earlier, hold_obstacle};
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
-    DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range, short_touches,
+    DiscreteTrajectory, EnergyExchange, out_of_domain, out_of_range, short_touches, wrinkles,
 };
 use crate::model::System;
 use crate::sensitivity::{self, Gradients, NoSensitivity, Sensitivity, gradients, sensitivities};
@@ -231,6 +231,8 @@ fn remarks(
     remarks.note("contact_stages", solve_messages::stages(optimum));
     let outside = warnings::domain_note(&result.outside, true);
     remarks.warn("outside_domain", outside);
+    let wrinkles = wrinkles(&optimum.model, &result.discrete);
+    remarks.warn("wrinkles", warnings::wrinkle_warning(&wrinkles, true));
     let beyond = out_of_range(&optimum.model, &result.discrete);
     let beyond = warnings::stretch_range_warning(&beyond, true);
     remarks.warn("outside_range", beyond);

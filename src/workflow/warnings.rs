@@ -11,7 +11,7 @@
 use crate::control::problem::Simulation;
 use crate::dynamics::trajectory::Trajectory;
 use crate::dynamics::{
-    DiscreteTrajectory, LocalError, OutOfDomain, OutOfRange, STEPS_OF_TOUCH, ShortTouch,
+    DiscreteTrajectory, LocalError, OutOfDomain, OutOfRange, STEPS_OF_TOUCH, ShortTouch, Wrinkle,
     distance_between,
 };
 use crate::math::{shortest, significant};
@@ -270,6 +270,25 @@ fn listed<T>(what: &str, list: &[T], one: impl Fn(&T) -> String) -> Option<Strin
         more => format!("; and {more} more"),
     };
     (!named.is_empty()).then(|| format!("{what}: {}{more}", named.join("; ")))
+}
+
+/// One warning of membranes that are compressed; with times where there is a motion.
+pub(crate) fn wrinkle_warning(list: &[Wrinkle], moves: bool) -> Option<String> {
+    let one = |of: &Wrinkle| {
+        let when = match moves {
+            true => format!(" at {:.4} s", of.time / 1e3),
+            false => String::new(),
+        };
+        let [x, y, z] = of.place.into();
+        format!(
+            "{} by {} kPa{when} around ({x:.3}, {y:.3}, {z:.3}) mm of its reference",
+            of.name,
+            significant(-of.stress * 1e3, 3)
+        )
+    };
+    let what =
+        "membranes are compressed, where they would wrinkle, which their triangles do not show";
+    listed(what, list, one)
 }
 
 /// One warning of touches that steps do not resolve.

@@ -62,12 +62,8 @@ pub(crate) fn block(mesh: Mesh, material: Material) -> Solid {
         name: "block".into(),
         materials: vec![material],
         element: ElementKind::Hex8,
-        electrodes: Vec::new(),
-        supports: Vec::new(),
-        glued: Vec::new(),
-        velocities: Vec::new(),
-        prestretch: None,
         mesh,
+        ..Solid::default()
     }
 }
 

@@ -456,9 +456,8 @@ pub fn blocks() -> System {
                 body: None,
             },
         ],
-        velocities: Vec::new(),
-        prestretch: None,
         mesh,
+        ..Solid::default()
     });
     system.markers.push(Marker {
         name: "corner".into(),

@@ -23,6 +23,7 @@ mod hexahedron_viscosity;
 mod horizon;
 mod kernel;
 mod linear_steps;
+mod membrane;
 mod naive_formulas;
 mod naive_hexahedron;
 mod naive_sources;

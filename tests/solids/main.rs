@@ -13,6 +13,7 @@ mod loads;
 mod lowest_mode;
 mod maxwell;
 mod maxwell_limits;
+mod membranes;
 mod mesh;
 mod multigrid;
 mod physics;

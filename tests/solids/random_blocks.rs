@@ -40,7 +40,7 @@ fn material(random: &mut Random, kind: ElementKind, is_viscous: bool) -> Materia
     let shear_modulus = 0.03 * 10_f64.powf(random.between(0.0, 1.2));
     let stiff = match kind {
         ElementKind::Hex8Q1P0 | ElementKind::Tet10P2P0 => random.between(5.0, 50.0),
-        ElementKind::Hex8 | ElementKind::Tet10 => random.between(1.0, 8.0),
+        ElementKind::Hex8 | ElementKind::Tet10 | ElementKind::Membrane => random.between(1.0, 8.0),
     };
     let law = match whole(random, 0, 5) {
         0 => Some(ElasticLaw::Gent { limit: 60.0 }),

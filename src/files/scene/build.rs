@@ -13,7 +13,7 @@ use crate::files::scene::names::{find_body, names};
 use crate::files::scene::nodes::place;
 use crate::files::scene::point::{unit_axis, vector};
 use crate::files::scene::shape::shape;
-use crate::files::scene::solid::solid;
+use crate::files::scene::solid::{solid, ties};
 use crate::files::scene::spec::{ChainSpec, MarkerSpec, SceneSpec};
 use crate::files::scene::spring::{spring, tendon};
 use crate::mesh::Mesh;
@@ -45,11 +45,21 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
         elements.add(muscle.fidelity.elements(), scope)?;
         Ok(muscle)
     })?;
+    let solid_names = names(&scene.solids, |solid| &solid.name);
     let mut blocks = lists.build("solids", &scene.solids, |spec, scope| {
-        let solid = solid(spec, &body_names, &materials, scope)?;
+        let solid = solid(spec, &body_names, &solid_names, &materials, scope)?;
         elements.add(solid.mesh.element_count(), scope)?;
         Ok(solid)
     })?;
+    let tied = ties(&scene.solids, &blocks, &body_names, &scope.key("solids"))?;
+    for (block, tied) in blocks.iter_mut().zip(tied) {
+        block.supports.iter_mut().for_each(|support| {
+            let is_free = |node: &usize| tied.iter().all(|tie| tie.node != *node);
+            support.nodes.retain(is_free);
+        });
+        block.supports.retain(|support| !support.nodes.is_empty());
+        block.tied = tied;
+    }
     number_sources(&mut blocks, muscles.len());
     let joints = lists.build("joints", &scene.joints, |spec, scope| {
         joint(spec, &body_names, scope)

@@ -12,7 +12,7 @@ use crate::files::scene::spec_solids::{
 };
 use crate::math::Matrix;
 use crate::mesh::Mesh;
-use crate::model::system::{ElementKind, Glue, Material, Solid, Support};
+use crate::model::system::{ElementKind, Glue, Material, Solid, Support, Tie};
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -20,6 +20,7 @@ use std::collections::BTreeMap;
 pub(crate) fn solid(
     spec: &SolidSpec,
     bodies: &[String],
+    solids: &[String],
     materials: &[(String, Material)],
     scope: &Scope<'_>,
 ) -> Result<Solid> {
@@ -45,7 +46,7 @@ pub(crate) fn solid(
     let element = spec
         .element
         .map_or(ElementKind::of_mesh(&mesh), ElementKind::from);
-    let (glued, grounded) = glued(spec, &mesh, bodies, &scope.key("glued"))?;
+    let (glued, grounded) = glued(spec, &mesh, bodies, solids, &scope.key("glued"))?;
     let mut supports = supports(spec, &mesh, &scope.key("fixed"))?;
     supports.extend(grounded);
     // A glued node moves with its body, whatever else holds its face.
@@ -68,6 +69,7 @@ pub(crate) fn solid(
         electrodes,
         supports,
         glued,
+        tied: Vec::new(),
         velocities,
         thickness,
         prestretch: prestretch(spec.prestretch.as_ref(), &scope.key("prestretch"))?,
@@ -139,12 +141,16 @@ fn glued(
     spec: &SolidSpec,
     mesh: &Mesh,
     bodies: &[String],
+    solids: &[String],
     scope: &Scope<'_>,
 ) -> Result<(Vec<Glue>, Vec<Support>)> {
     let mut owners: BTreeMap<usize, &String> = BTreeMap::new();
     let (mut glued, mut grounded) = (Vec::new(), Vec::new());
     for (name, body) in &spec.glued {
         let scope = scope.key(name);
+        if is_solid(body, bodies, solids) {
+            continue;
+        }
         let all = face(name, mesh, &scope)?;
         let mut nodes = Vec::new();
         for &node in all {
@@ -170,6 +176,48 @@ fn glued(
         }
     }
     Ok((glued, grounded))
+}
+
+/// Returns true if a name is one of a solid: bodies come first.
+fn is_solid(name: &String, bodies: &[String], solids: &[String]) -> bool {
+    solids.contains(name) && !bodies.contains(name) && name != "ground"
+}
+
+/// The nodes of the faces of each solid that are glued to other ones, as sums of nodes there.
+pub(crate) fn ties(
+    specs: &[SolidSpec],
+    all: &[Solid],
+    bodies: &[String],
+    scope: &Scope<'_>,
+) -> Result<Vec<Vec<Tie>>> {
+    let names: Vec<String> = all.iter().map(|solid| solid.name.clone()).collect();
+    let is_solid = |to: &String| is_solid(to, bodies, &names);
+    let is_tied = |spec: &SolidSpec| spec.glued.values().any(is_solid);
+    scope.each(specs, |spec, scope| {
+        let mut ties: BTreeMap<usize, Tie> = BTreeMap::new();
+        let of = &all[names
+            .iter()
+            .position(|name| *name == spec.name)
+            .unwrap_or(0)];
+        for (name, to) in spec.glued.iter().filter(|(_, to)| is_solid(to)) {
+            let solid = names.iter().position(|other| other == to).unwrap_or(0);
+            let faces = all[solid].mesh.boundary();
+            let scope = scope.key("glued").key(name);
+            refuse!(if spec.name == *to || is_tied(&specs[solid]), scope;
+                found format!("{to:?}, which is glued to a block or a membrane itself"),
+                expected "one that is not");
+            for &node in face(name, &of.mesh, &scope)? {
+                let at = &of.mesh.nodes[node];
+                let missing = || {
+                    let found = format!("a node at {} off the surface of {to:?}", place(at));
+                    scope.wrong(found, "a face that lies on it")
+                };
+                let on = all[solid].mesh.footing(&faces, at).ok_or_else(missing)?;
+                ties.insert(node, Tie { node, solid, on });
+            }
+        }
+        Ok(ties.into_values().collect())
+    })
 }
 
 /// v₀ + ω × (X − c) + diag(rate) (X − c) of each node in mm/ms.

@@ -46,7 +46,8 @@ objects! {
         pub stack: Option<StackSpec>,
         /// Faces and other places that are held. A node that is glued as well moves with its body.
         pub fixed?: Vec<FixedSpec>,
-        /// Names of bodies by the faces that are glued to them; a face glued to `ground` is clamped.
+        /// Names of bodies, or of other solids, by the faces that are glued to them; a face glued to `ground` is clamped. A face that is glued to
+        /// another solid lies on its surface.
         pub glued: BTreeMap<String, String>,
         /// Velocity at the start; at rest where not written.
         pub velocity: Option<VelocitySpec>,

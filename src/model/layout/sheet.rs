@@ -6,6 +6,7 @@ use crate::energy::{
     ViscousMembrane,
 };
 use crate::functional::POINTS;
+use crate::kinematics::MaterialVector;
 use crate::math::{Derivatives, Local, Matrix, Vector};
 use crate::model::layout::solid_block::SolidBlock;
 use nalgebra::SVector;
@@ -29,6 +30,22 @@ fn stress(forces: [Vector; 2], [a, b]: &[Vector; 2]) -> Matrix {
 fn arguments<const M: usize>([a, b]: &[Vector; 2], others: &[f64]) -> [f64; M] {
     let mut all = a.iter().chain(b.iter()).chain(others).copied();
     std::array::from_fn(|_| all.next().unwrap_or(0.0))
+}
+
+impl SheetPoint {
+    /// The tangents as sums of material vectors of the nodes.
+    pub(crate) fn sums<'v>(
+        &self,
+        node: impl Fn(usize) -> &'v MaterialVector,
+    ) -> [MaterialVector; 2] {
+        [0, 1].map(|direction| {
+            let mut sum = MaterialVector::default();
+            for (i, gradient) in self.gradients.iter().enumerate() {
+                sum = MaterialVector::combine(1.0, &sum, gradient[direction], node(i));
+            }
+            sum
+        })
+    }
 }
 
 impl SolidBlock {

@@ -1,6 +1,6 @@
 //! Layout of elastic blocks before they become terms: the vector of each node of a mesh, and the source of its potential.
 //!
-//! A node glued to a body is a material point of it, a node held in all directions a point of the ground; all others have
+//! A node glued to a body is a material point of it, one glued to another block a sum of nodes there, a node held in all directions a point of the ground; all others have
 //! coordinates. Only nodes that an electric field reaches have a potential.
 
 use crate::coordinates::NodePlace;
@@ -11,7 +11,7 @@ use crate::model::analysis::{Analysis, ModelError};
 use crate::model::layout::solid_block::{Owner, Shape, SolidBlock};
 use crate::model::layout::variables::{Variable, Variables};
 use crate::model::system::electrode_circuits::ElectrodeCircuit;
-use crate::model::system::{Glue, Material, Potential, Solid, System};
+use crate::model::system::{Glue, Material, Potential, Solid, System, Tie};
 use crate::model::terms::field_extent;
 use std::collections::{BTreeMap, HashMap};
 
@@ -56,11 +56,19 @@ impl Solids {
         vectors: &mut Vectors,
     ) -> Result<Self, ModelError> {
         let (mut out, unit) = (Self::default(), unit(&solids));
+        let mut places: Vec<Vec<usize>> = vec![Vec::new(); solids.len()];
+        // Those that are glued to others come after them.
+        for is_tied in [false, true] {
+            let all = solids.iter().enumerate();
+            for (index, solid) in all.filter(|(_, solid)| solid.tied.is_empty() != is_tied) {
+                places[index] = out.places(index, solid, reference, ties, vectors, &places);
+            }
+        }
         let of_scene = (0..system.solids.len()).map(Owner::Block);
         let owners = of_scene.chain(system.meshed_muscles().map(Owner::Muscle));
         for ((index, solid), owner) in solids.into_iter().enumerate().zip(owners) {
             let (shapes, sheets) = (shapes(&solid)?, sheets(&solid)?);
-            let places = out.places(index, &solid, reference, ties, vectors);
+            let places = std::mem::take(&mut places[index]);
             let charged = field_extent::charged(system, index, &analysis.zero_inputs);
             let is_dielectric = field_extent::dielectric(&solid, &charged);
             let of_motion = analysis.of_motion;
@@ -106,6 +114,7 @@ impl Solids {
         reference: &[Pose],
         ties: bool,
         vectors: &mut Vectors,
+        others: &[Vec<usize>],
     ) -> Vec<usize> {
         let count = solid.mesh.nodes.len();
         let mut free = vec![[true; 3]; count];
@@ -124,8 +133,17 @@ impl Solids {
                 free[node] = [to.is_some() && ties; 3];
             }
         }
+        let tied: BTreeMap<usize, &Tie> = solid.tied.iter().map(|tie| (tie.node, tie)).collect();
         let mut place = |node: usize| {
             let at = &solid.mesh.nodes[node];
+            if let Some(Tie { solid, on, .. }) = tied.get(&node) {
+                let mut sum = MaterialVector::default();
+                for &(node, part) in on {
+                    let place = &vectors.list()[others[*solid][node]];
+                    sum = MaterialVector::combine(1.0, &sum, part, place);
+                }
+                return vectors.push(sum);
+            }
             if free[node] == [false; 3] {
                 let body = body[node].flatten();
                 return vectors.push(MaterialVector::point(body, at, reference));

@@ -92,6 +92,9 @@ impl Parts {
             for glue in &solid.glued {
                 join(glue.body, self.solid(s));
             }
+            for tie in &solid.tied {
+                join(Some(self.solid(tie.solid)), self.solid(s));
+            }
         }
         for component in system.components.iter() {
             for pair in self.tied(component).windows(2) {

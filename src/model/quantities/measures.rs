@@ -2,8 +2,9 @@
 
 use crate::element::FieldPoint;
 use crate::energy::{
-    Angle, AngleStep, ContactForce, ContactGap, Cores, Energy, Law, Multiple, OfCores, OutsideBox,
-    PeakExcess, PositionComponent, Projection, ProjectionStep, SquaredDistance, law,
+    Angle, AngleStep, ChargedMembrane, ContactForce, ContactGap, Cores, DielectricMembrane, Energy,
+    Law, Multiple, OfCores, OutsideBox, PeakExcess, PositionComponent, Projection, ProjectionStep,
+    SquaredDistance, law,
 };
 use crate::functional::{
     Curved, Element, ElementField, Group, Kernel, LawElement, Measure, Stencil, Term, VectorArg,
@@ -15,7 +16,7 @@ use crate::model::components::muscle_constants::{MuscleConstants, charge_field};
 use crate::model::constants::constant::Constant;
 use crate::model::constants::free_parameters::{MovedPoints, Read};
 use crate::model::construction::Construction;
-use crate::model::layout::solid_block::of_shape;
+use crate::model::layout::solid_block::{SolidBlock, of_shape};
 use crate::model::layout::variables::Role;
 use crate::model::quantities::quantity::Quantity;
 use crate::model::quantities::what::{At, FieldPlace, Of, Region, What};
@@ -305,11 +306,38 @@ impl<'k> Reading<'k, '_> {
         }
     }
 
+    /// Squared field `D (V/H)²` of a triangle of a membrane at a point, or the first one, over the one of the unit.
+    fn sheet_field(&mut self, block: &SolidBlock, element: usize, point: usize) -> Made {
+        let points = block.sheets[element].get(point)?;
+        let places = block.nodes::<6>(element);
+        let tangents = points.sums(|node| &self.vectors.list()[places[node]]);
+        let tangents = tangents.map(|tangent| self.vectors.index(tangent));
+        let vectors = tangents.map(|tangent| self.at(tangent));
+        let [terminal, ..] = block.terminals::<6>(element);
+        let factor = terminal
+            .scalar
+            .map_or(terminal.constant, |(_, factor)| factor);
+        let of = DielectricMembrane {
+            volume: 1.0,
+            c1: 0.0,
+            c2: 0.0,
+            permittivity: -2.0,
+            thickness: block.thickness() * self.quantity.unit / factor,
+        };
+        match terminal.scalar {
+            Some((scalar, _)) => self.formula::<_, 7, 2, 1>(of, vectors, [scalar]),
+            None => self.formula::<_, 6, 2, 0>(ChargedMembrane { of }, vectors, []),
+        }
+    }
+
     /// Squared field of an element of a block, at its centre or at a Gauss point, over the one of the unit.
-    fn element_field(&self, block: usize, element: usize, point: Option<usize>) -> Made {
+    fn element_field(&mut self, block: usize, element: usize, point: Option<usize>) -> Made {
         let block = &self.known.blocks.list[block];
         if !block.is_dielectric[element] {
             return None;
+        }
+        if !block.sheets.is_empty() {
+            return self.sheet_field(block, element, point.unwrap_or_default());
         }
         let limit = self.quantity.unit;
         of_shape!(&block.shapes[element], shape => {

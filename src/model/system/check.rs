@@ -347,7 +347,7 @@ impl Muscle {
             found "\"section_inertia\" of a muscle of finite elements",
             expected "no such key, as all inertia of finite elements counts");
         refuse!(unless mesh.element.cell() == Cell::Hexahedron, Key("element");
-            found "a kind of tetrahedra", expected "one of hexahedra, into which a muscle is cut");
+            found format!("a kind of {}", mesh.element.cell().names()), expected "one of hexahedra, into which a muscle is cut");
         check_elements(mesh.elements).map_err(|fault| fault.under("elements"))?;
         let (along, layers) = (mesh.elements[2], mesh.layers);
         refuse!(unless layers > 0 && along.is_multiple_of(layers), Key("layers");

@@ -11,6 +11,7 @@ pub(super) mod prestretch;
 use crate::math::Signal;
 use crate::mesh::Mesh;
 use crate::mesh::cell::Cell;
+use crate::mesh::footing::Footing;
 use crate::model::components::{BlockLoad, Components, Load, LoadPlace};
 use nalgebra::{Matrix3, Vector3};
 
@@ -282,6 +283,8 @@ pub struct Solid {
     pub supports: Vec<Support>,
     /// Nodes that are glued to bodies.
     pub glued: Vec<Glue>,
+    /// Nodes that are glued to other blocks or membranes, of which none is glued itself.
+    pub tied: Vec<Tie>,
     /// Velocity of each node at the start in mm/ms; empty at rest.
     pub velocities: Vec<Vector3<f64>>,
     /// Thickness of a membrane without stress in mm; `None` of a block.
@@ -376,6 +379,17 @@ pub struct Glue {
     pub nodes: Vec<usize>,
     /// The body.
     pub body: Option<usize>,
+}
+
+/// A node of a block or a membrane that is glued to another one: it is a sum of nodes there.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tie {
+    /// The node.
+    pub node: usize,
+    /// The other block or membrane.
+    pub solid: usize,
+    /// Its nodes, and the parts that they have.
+    pub on: Footing,
 }
 
 /// A named material point whose path is reported.

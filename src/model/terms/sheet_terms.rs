@@ -122,18 +122,11 @@ impl Model {
 impl<'a> At<'a> {
     fn new(of: &'a SolidBlock, element: usize, point: &SheetPoint, terms: &mut Terms<'_>) -> Self {
         let nodes: [usize; 6] = of.nodes(element);
-        let tangent = |direction: usize, terms: &mut Terms<'_>| {
-            let mut sum = MaterialVector::default();
-            for (node, gradient) in nodes.iter().zip(&point.gradients) {
-                let place = &terms.vectors.list()[*node];
-                sum = MaterialVector::combine(1.0, &sum, gradient[direction], place);
-            }
-            terms.new_vector(sum)
-        };
+        let tangents = point.sums(|node| &terms.vectors.list()[nodes[node]]);
         Self {
             of,
             element,
-            tangents: [tangent(0, terms), tangent(1, terms)],
+            tangents: tangents.map(|tangent| terms.new_vector(tangent)),
             volume: point.area * of.thickness(),
         }
     }

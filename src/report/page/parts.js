@@ -133,7 +133,7 @@ class Solid {
   }
 }
 
-/** An elastic block: faces of four corners that move. Each face has corners of its own, so that it is flat in the light. */
+/** An elastic block or membrane: faces of four corners that move. Each face has corners of its own, so that it is flat in the light. */
 class Block {
   constructor(part) {
     this.part = part;
@@ -153,7 +153,7 @@ class Block {
     const halves = new Uint32Array(1.5 * this.faces.length);
     for (let f = 0; 6 * f < halves.length; f++) halves.set([0, 1, 2, 0, 2, 3].map((corner) => 4 * f + corner), 6 * f);
     this.surface.setIndex(new THREE.BufferAttribute(halves, 1));
-    this.material = new THREE.MeshLambertMaterial({ vertexColors: THREE.VertexColors, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
+    this.material = new THREE.MeshLambertMaterial({ vertexColors: THREE.VertexColors, side: THREE.DoubleSide, polygonOffset: true, polygonOffsetFactor: 1, polygonOffsetUnits: 1 });
     this.position = new THREE.BufferAttribute(this.now, 3);
     this.object = new THREE.Group();
     this.object.add(new THREE.Mesh(this.surface, this.material));
