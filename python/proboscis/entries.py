@@ -25,6 +25,16 @@ Text: TypeAlias = "str | Part | PathLike[str]"
 """A text; a part stands for its name, a result for its folder."""
 
 
+class Annulus(TypedDict):
+    """A ring of triangles."""
+
+    elements: Sequence[Division]
+    """Elements from the inner edge to the outer one, a number or a list of layers, and around."""
+
+    radii: Sequence[Quantity] | Numbers
+    """Inner and outer radius, SI unit m."""
+
+
 class Axes(TypedDict):
     """Two axes."""
 
@@ -160,6 +170,16 @@ Dielectric: TypeAlias = "Literal['first_order', 'ideal']"
 """Law by which the relative permittivity enters the energy."""
 
 
+class Disc(TypedDict):
+    """A disc of triangles."""
+
+    elements: Division
+    """Elements from the centre to the edge: a number, or a list of layers."""
+
+    radius: Quantity
+    """Radius, SI unit m."""
+
+
 Division: TypeAlias = "int | Sequence[Layer]"
 """Division of a direction of a box."""
 
@@ -199,7 +219,7 @@ class Electrode(TypedDict):
     """Its potential."""
 
 
-Element: TypeAlias = "Literal['hex8', 'hex8_q1p0', 'tet10', 'tet10_p2p0']"
+Element: TypeAlias = "Literal['hex8', 'hex8_q1p0', 'tet10', 'tet10_p2p0', 'membrane']"
 """Kind of element: its interpolation, and its treatment of volume."""
 
 
@@ -445,6 +465,16 @@ Ramp = TypedDict(
 """Linear between two values, constant before and after."""
 
 
+class Rectangle(TypedDict):
+    """A rectangle of triangles."""
+
+    elements: Sequence[Division]
+    """Elements along both: numbers, or lists of layers."""
+
+    size: Sequence[Quantity] | Numbers
+    """Lengths of both edges, SI unit m."""
+
+
 class Restitution(TypedDict):
     """Restitution of an impact."""
 
@@ -530,6 +560,16 @@ class Sphere(TypedDict):
     """Radius, SI unit m."""
 
 
+class Sphere2(TypedDict):
+    """A sphere of triangles."""
+
+    elements: int
+    """Elements along a quarter of a great circle."""
+
+    radius: Quantity
+    """Radius, SI unit m."""
+
+
 class Stack(TypedDict):
     """Electrodes at all boundaries of equal layers, both ends included: grounded, driven, grounded…"""
 
@@ -560,6 +600,44 @@ class Stops(TypedDict):
 
     stiffness: Quantity
     """Stiffness beyond, SI unit N m/rad (revolute) or N/m (prismatic)."""
+
+
+class Surface(TypedDict):
+    """Surface of a membrane: exactly one of `rectangle`, `disc`, `annulus`, `tube` and `sphere`. `surface` is the set of all its nodes."""
+
+    annulus: NotRequired[Annulus]
+    """Ring; edges `inner` and `outer`."""
+
+    axis: NotRequired[AxisName]
+    """Direction of the normal, or of the axis of a tube; z where not written."""
+
+    centre: NotRequired[Sequence[Quantity] | Numbers]
+    """Centre, or of a tube that of its lower end, SI unit m; the origin where not written."""
+
+    disc: NotRequired[Disc]
+    """Disc; edge `edge`."""
+
+    rectangle: NotRequired[Rectangle]
+    """Rectangle around the centre; edges `x_min`, `x_max`, `y_min`, `y_max` along its own directions, those that follow the axis."""
+
+    sphere: NotRequired[Sphere2]
+    """Sphere."""
+
+    tube: NotRequired[Tube]
+    """Tube, open at both ends `z_min` and `z_max`."""
+
+
+class Tube(TypedDict):
+    """A tube of triangles."""
+
+    elements: Sequence[Division]
+    """Elements around, and along the axis, a number or a list of layers."""
+
+    length: Quantity
+    """Length, SI unit m."""
+
+    radius: Quantity
+    """Radius, SI unit m."""
 
 
 class Velocity(TypedDict):

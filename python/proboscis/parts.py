@@ -266,20 +266,25 @@ class Muscle(Part):
 
 
 class Solid(Part):
-    """An elastic block of finite elements: a `box` or a `mesh`, of one `material` or of `materials` by region.
+    """An elastic block of finite elements: a `box` or a `mesh`, of one `material` or of `materials` by region; or a membrane with a `thickness`: a
+    `surface` or a `mesh` of triangles or quadrangles.
 
-    Faces are `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max` of a box, and physical groups of a mesh.
+    Faces are `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max` of a box, the edges of a surface, and physical groups of a mesh.
 
     * `box`: Box with edges along the axes of the ground frame.
-    * `electrodes`: Electrodes; without any the block has no potential.
+    * `electrodes`: Electrodes; without any the block has no potential. Those of a membrane lie on both sides: their potential is the voltage
+      across it, of the triangles that they cover.
     * `element`: Kind of its elements; `hex8` where not written, `tet10` of a mesh of tetrahedra.
     * `fixed`: Faces and other places that are held. A node that is glued as well moves with its body.
-    * `glued`: Names of bodies by the faces that are glued to them; a face glued to `ground` is clamped.
+    * `glued`: Names of bodies, or of other solids, by the faces that are glued to them; a face glued to `ground` is clamped. A face that is glued
+      to another solid lies on its surface.
     * `material`: Name of the material.
     * `materials`: Names of the materials by region.
     * `mesh`: Path of a Gmsh file, relative to this file.
     * `prestretch`: Stretch before it was glued and held, by which the mesh differs from the block without stress; none where not written.
     * `stack`: Electrodes between the layers of a stack and at its ends, alternately grounded and driven.
+    * `surface`: Surface of a membrane.
+    * `thickness`: Thickness of a membrane before its prestretch, SI unit m.
     * `unit`: Length of a unit of the Gmsh file, SI unit m; 1 m where not written.
     * `velocity`: Velocity at the start; at rest where not written.
     """
@@ -300,6 +305,8 @@ class Solid(Part):
         mesh: Text | None = None,
         prestretch: entries.Prestretch | None = None,
         stack: entries.Stack | None = None,
+        surface: entries.Surface | None = None,
+        thickness: Quantity | None = None,
         unit: Quantity | None = None,
         velocity: entries.Velocity | None = None,
     ) -> None:
@@ -316,6 +323,8 @@ class Solid(Part):
                 "mesh": mesh,
                 "prestretch": prestretch,
                 "stack": stack,
+                "surface": surface,
+                "thickness": thickness,
                 "unit": unit,
                 "velocity": velocity,
             },

@@ -14,11 +14,14 @@
 //!
 //! of which y is smooth at c = 1, where both stretches are one.
 
-use crate::energy::{Coefficient, OfPlane};
+use crate::energy::Coefficient;
 use crate::math::{Fault, Jet, Key, Number, refuse};
 use nalgebra::{SVector, Vector1};
 use std::f64::consts::PI;
 use std::fmt::Debug;
+
+/// A function of I and D of a membrane.
+pub type OfPlane<const ORDER: usize, T> = Jet<2, ORDER, T>;
 
 /// A law of elasticity, the neo-Hookean one or another.
 pub trait Elasticity<T: Number = f64>: Copy + Debug + Send + Sync + 'static {

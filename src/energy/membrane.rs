@@ -7,12 +7,9 @@
 //! I₁ = I + 1/D,    I₂ = D + I/D,    field V/(H λ₃) = √D V/H.
 //! ```
 
-use crate::energy::{Elasticity, Energy, NeoHooke, law};
+use crate::energy::{Elasticity, Energy, NeoHooke, OfPlane, law};
 use crate::math::{Jet, Number};
 use nalgebra::SVector;
-
-/// A function of I and D.
-pub type OfPlane<const ORDER: usize, T> = Jet<2, ORDER, T>;
 
 /// I and D of tangents that begin at two places among the arguments.
 fn plane<const M: usize, const ORDER: usize, T: Number>(

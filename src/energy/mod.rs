@@ -36,7 +36,7 @@ pub use contact::{
 pub use cored::{CoreForce, FormVariation, OfClosest, OfCores, Times};
 pub use cored_friction::{AtFeet, CoreFriction};
 pub use dot_products::OfDotProducts;
-pub use elastic_law::{ElasticConstants, ElasticLaw, Elasticity, NeoHooke};
+pub use elastic_law::{ElasticConstants, ElasticLaw, Elasticity, NeoHooke, OfPlane};
 pub use friction::{ContactFriction, FrictionLocal, StickingFriction};
 pub use kinetic::{
     DeadLoad, FollowingForce, Gravity, KineticCoupling, KineticEnergy, SurfaceCharge,
@@ -49,7 +49,7 @@ pub use limit::{
 };
 pub use maxwell_damper::{DamperDerivatives, MaxwellCell, MaxwellDamper};
 pub use membrane::{
-    ChargedMembrane, DielectricMembrane, ElasticMembrane, MaxwellMembrane, OfPlane, ViscousMembrane,
+    ChargedMembrane, DielectricMembrane, ElasticMembrane, MaxwellMembrane, ViscousMembrane,
 };
 pub use muscle::{DielectricCell, ElasticCell, SectionInertia};
 pub use of_square::OfSquare;

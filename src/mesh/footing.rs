@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Vector2, Vector3};
 /// Part of the longest edge of a face within which a place lies on it.
 const ON_FACE: f64 = 1e-3;
 
-/// How far outside its parent cell a place of a face may lie.
+/// Part of the parent cell by which a place of a face may lie outside.
 const BEYOND: f64 = 1e-6;
 
 /// Steps to the nearest place of a face, of which straight ones take one.

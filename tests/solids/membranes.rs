@@ -104,8 +104,8 @@ fn a_balloon_is_that_of_the_closed_form() {
 fn annulus(elements: usize) -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/reference/annulus.json");
     let mut system = read_scene(&path).unwrap();
-    let radii = |count: usize| (0..=count).map(move |i| 10.0 + 15.0 * i as f64 / count as f64);
-    let mesh = made(&Surface::Annulus(radii(elements).collect(), 24));
+    let radii = (0..=elements).map(|i| 10.0 + 15.0 * i as f64 / elements as f64);
+    let mesh = made(&Surface::Annulus(radii.collect(), 8 * elements));
     let film = &mut system.solids[0];
     film.glued[0].nodes.clone_from(&mesh.sets["inner"]);
     film.supports[0].nodes.clone_from(&mesh.sets["outer"]);
@@ -124,16 +124,15 @@ fn an_annulus_around_a_disc_is_that_of_the_reference() {
         ([2000.0, 0.3], 0.968_441_95),
         ([3000.0, 0.6], 1.957_209_14),
     ];
-    let models = [3, 6, 12].map(annulus);
+    let models = [2, 4, 8].map(annulus);
     for (inputs, exact) in reference {
         let errors = models.each_ref().map(|model| {
             let found = equilibrium(model, &model.coordinates_at(&[]), &inputs).unwrap();
             found.z[0].abs() - exact
         });
-        // Fourth order along the radius; around it the reference is round.
-        assert!(errors[2].abs() < 2e-6 * exact, "{inputs:?}: {errors:?}");
-        let order = (errors[0] / errors[1]).abs().log2();
-        assert!(order > 3.0, "{inputs:?}: {errors:?}");
+        assert!(errors[2].abs() < 5e-6 * exact, "{inputs:?}: {errors:?}");
+        let order = (errors[1] / errors[2]).abs().log2();
+        assert!(order > 3.5, "{inputs:?}: {errors:?}");
     }
 }
 
@@ -177,11 +176,11 @@ fn a_free_membrane_keeps_its_momenta() {
         Vector3::new(0.1, 0.05 * x.x, 0.02 * x.y) + Vector3::new(0.01, 0.02, 0.03).cross(x)
     };
     solid.velocities = solid.mesh.nodes.iter().map(velocity).collect();
-    let model = Model::new(system(vec![solid]), None, 0.05, &[]).unwrap();
+    let model = Model::new(system(vec![solid]), None, 0.5, &[]).unwrap();
     let rates = model.node_rates().unwrap();
     let start = Start::with_rates(&model, model.coordinates_at(&[]), &rates);
     let go_on = |_: &_| ControlFlow::Continue(());
-    let (discrete, failure) = simulate(&model, &start, 0.05, 60, |_, _| vec![], go_on);
+    let (discrete, failure) = simulate(&model, &start, 0.5, 60, |_, _| vec![], go_on);
     assert_eq!(failure, None);
     let seen = observations(&model, &discrete);
     for column in &seen.columns {
@@ -195,8 +194,8 @@ fn a_free_membrane_keeps_its_momenta() {
             assert!(drift < 1e-9 * largest, "{}: {drift:e}", column.name);
         }
         if column.name == "total_energy" {
-            assert!(values.windows(2).all(|pair| pair[1] <= pair[0] + 1e-12));
-            assert!(drift > 1e-3 * values[0], "{drift}");
+            let last = values[values.len() - 1];
+            assert!(last < 0.99 * values[0], "{last} of {}", values[0]);
         }
     }
 }
@@ -242,6 +241,13 @@ fn a_membrane_is_glued_to_faces_of_blocks() {
     let faces = wall.mesh.boundary();
     let mut sheet = held(film(mesh, 0.2), "x_max");
     sheet.prestretch = Some(Matrix3::from_diagonal(&Vector3::new(1.4, 1.1, 0.6)));
+    let along: Vec<usize> = ["y_min", "y_max"]
+        .map(|set| sheet.mesh.sets[set].clone())
+        .concat();
+    sheet.supports.push(Support {
+        nodes: along,
+        held: [false, true, true],
+    });
     for &node in &sheet.mesh.sets["x_min"] {
         let at = sheet.mesh.nodes[node];
         let on = wall.mesh.footing(&faces, &at).unwrap();
@@ -255,19 +261,25 @@ fn a_membrane_is_glued_to_faces_of_blocks() {
     assert_eq!(found.is_stable(), Some(true));
     let x = model.action.map.placed(&found.z).x;
     let [wall, sheet] = [&model.solids[0], &model.solids[1]];
-    let moved = sheet.places(&x)[edge[0]].x;
-    assert!(moved > 0.01, "{moved}");
-    // The force of the film, by its stress in the middle, is that on the wall.
-    let places = sheet.places(&x);
-    let held = wall.places(&x);
-    assert!(
-        held.iter()
-            .zip(&wall.solid.mesh.nodes)
-            .any(|(x, at)| (x - at).norm() > 0.01)
-    );
-    let expected = 0.1 * (1.4_f64.powi(2) - (1.4 * 1.1_f64).powi(-2));
-    let stress = sheet.fields(0, &places, &[0.0; 64]).stress;
-    assert!((stress[(0, 0)] / expected - 1.0).abs() < 0.3, "{stress}");
+    let (of_wall, of_sheet) = (wall.places(&x), sheet.places(&x));
+    let pulled = of_sheet[edge[0]].x;
+    assert!(pulled > 1e-3, "{pulled}");
+    // The edge is where the face is, and the wall is pulled by the force of the film across a section, width by stress by thickness.
+    let faces = wall.solid.mesh.boundary();
+    let moved = Mesh {
+        nodes: of_wall,
+        ..wall.solid.mesh.clone()
+    };
+    for &node in &edge {
+        assert!(moved.footing(&faces, &of_sheet[node]).is_some());
+    }
+    let section = |element: usize| {
+        let fields = sheet.fields(element, &of_sheet, &[0.0; 64]);
+        fields.stress[(0, 0)] * 0.2 * fields.deformation_gradient[(2, 2)]
+    };
+    let forces: Vec<f64> = (0..sheet.sheets.len()).map(section).collect();
+    let [least, most] = [f64::min, f64::max].map(|of| forces.iter().copied().reduce(of).unwrap());
+    assert!(least > 0.5 * most && most > 0.0, "{forces:?}");
 }
 
 #[test]

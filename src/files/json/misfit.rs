@@ -193,8 +193,8 @@ const TABLE: [(&[&str], &str); 6] = [
         "materials are elastic and viscous; they neither yield nor break",
     ),
     (
-        &["shell", "membrane", "beam", "cloth"],
-        "elements are hexahedra and tetrahedra",
+        &["shell", "beam", "cloth"],
+        "elements are hexahedra, tetrahedra and membranes, which are solids with a thickness",
     ),
 ];
 

@@ -3,7 +3,8 @@
 use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 
 use crate::files::json::scope::{Result, Scope, refuse};
-use crate::files::scene::mesh::{DEFAULT_UNIT, mesh_mistake};
+use crate::files::scene::division::mesh_mistake;
+use crate::files::scene::mesh::DEFAULT_UNIT;
 use crate::files::scene::point::{unit_axis, vector};
 use crate::files::scene::spec::{BodyMeshSpec, BodySpec};
 use crate::files::stl;

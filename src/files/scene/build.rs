@@ -51,15 +51,7 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
         elements.add(solid.mesh.element_count(), scope)?;
         Ok(solid)
     })?;
-    let tied = ties(&scene.solids, &blocks, &body_names, &scope.key("solids"))?;
-    for (block, tied) in blocks.iter_mut().zip(tied) {
-        block.supports.iter_mut().for_each(|support| {
-            let is_free = |node: &usize| tied.iter().all(|tie| tie.node != *node);
-            support.nodes.retain(is_free);
-        });
-        block.supports.retain(|support| !support.nodes.is_empty());
-        block.tied = tied;
-    }
+    tie(&scene, &body_names, &mut blocks, scope)?;
     number_sources(&mut blocks, muscles.len());
     let joints = lists.build("joints", &scene.joints, |spec, scope| {
         joint(spec, &body_names, scope)
@@ -113,6 +105,25 @@ pub(crate) fn build_scene(scene: &SceneSpec, scope: &Scope<'_>) -> Result<System
     let sources = names(&system.sources(), |source| &source.name);
     scope.unique(&sources, &[], |_| scope.key("solids"))?;
     Ok(system)
+}
+
+/// Glues solids to others, on which their nodes then depend, whatever else holds them.
+fn tie(
+    scene: &SceneSpec,
+    bodies: &[String],
+    blocks: &mut [Solid],
+    scope: &Scope<'_>,
+) -> Result<()> {
+    let tied = ties(&scene.solids, blocks, bodies, &scope.key("solids"))?;
+    for (block, tied) in blocks.iter_mut().zip(tied) {
+        for support in &mut block.supports {
+            let is_free = |node: &usize| tied.iter().all(|tie| tie.node != *node);
+            support.nodes.retain(is_free);
+        }
+        block.supports.retain(|support| !support.nodes.is_empty());
+        block.tied = tied;
+    }
+    Ok(())
 }
 
 /// Checks that names by which parts refer to each other and to files are unique.

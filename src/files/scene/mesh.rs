@@ -2,17 +2,18 @@
 
 use nalgebra::Vector3;
 
-use crate::files::json::error::{Result, SceneError};
+use crate::files::json::error::Result;
 use crate::files::json::scope::{Scope, refuse, the_one};
+use crate::files::scene::division::{layers as divided, mesh_mistake, name_regions};
 use crate::files::scene::point::vector;
-use crate::files::scene::spec_solids::{DivisionSpec, ElementSpec, GridSpec, LayerSpec, SolidSpec};
+use crate::files::scene::spec_solids::{ElementSpec, GridSpec, SolidSpec};
 use crate::files::scene::surface::surface;
 use crate::mesh::cell::Cell;
 use crate::mesh::error::{MeshError, MeshPlace};
 use crate::mesh::grid::Grid;
 use crate::mesh::{Mesh, gmsh};
+use crate::model::check_elements;
 use crate::model::system::ElementKind;
-use crate::model::{MOST_ELEMENTS, check_elements};
 
 /// Unit of a mesh file in mm where none is written: the metre.
 pub(crate) const DEFAULT_UNIT: f64 = 1e3;
@@ -53,26 +54,6 @@ fn from_file(path: &str, spec: &SolidSpec, scope: &Scope<'_>) -> Result<Meshed> 
     Ok(Meshed { mesh, planes: None })
 }
 
-/// Converts an error of a mesh to one at the place in the scene that asks for it.
-pub(crate) fn mesh_mistake(error: &MeshError, scope: &Scope<'_>) -> SceneError {
-    match error {
-        MeshError::Unreadable { file, cause } => {
-            let found = format!("{file:?}, which cannot be read ({cause})");
-            scope.wrong(found, "a readable file")
-        }
-        MeshError::Wrong {
-            place,
-            found,
-            expected,
-        } => match place {
-            MeshPlace::Line(..) | MeshPlace::Element(..) => {
-                scope.wrong(format!("{found} in {place}"), expected)
-            }
-            MeshPlace::Layers(_) | MeshPlace::Whole => scope.wrong(found, expected),
-        },
-    }
-}
-
 fn boxed(spec: &GridSpec, element: Option<ElementSpec>, scope: &Scope<'_>) -> Result<Meshed> {
     let mut size = Vector3::zeros();
     for (axis, length) in spec.size.iter().enumerate() {
@@ -82,7 +63,7 @@ fn boxed(spec: &GridSpec, element: Option<ElementSpec>, scope: &Scope<'_>) -> Re
     let scope = scope.key("elements");
     let mut layers = [Vec::new(), Vec::new(), Vec::new()];
     for (axis, division) in spec.elements.iter().enumerate() {
-        layers[axis] = self::layers(division, size[axis], &scope.index(axis))?;
+        layers[axis] = divided(division, size[axis], &scope.index(axis))?;
     }
     let count = |layers: &Vec<(f64, usize)>| layers.iter().map(|layer| layer.1).sum();
     let elements = check_elements(layers.each_ref().map(count));
@@ -113,69 +94,4 @@ fn boxed(spec: &GridSpec, element: Option<ElementSpec>, scope: &Scope<'_>) -> Re
         mesh,
         planes: Some(grid.planes),
     })
-}
-
-/// Thickness in mm and elements of the layers of a division of a length.
-pub(super) fn layers(
-    division: &DivisionSpec,
-    length: f64,
-    scope: &Scope<'_>,
-) -> Result<Vec<(f64, usize)>> {
-    match division {
-        DivisionSpec::Equal(elements) => Ok(vec![(length, *elements)]),
-        DivisionSpec::Layers(written) => layered(written, scope),
-    }
-}
-
-/// Thickness in mm and elements of the layers along one direction.
-fn layered(layers: &[LayerSpec], scope: &Scope<'_>) -> Result<Vec<(f64, usize)>> {
-    scope.each(layers, |layer, scope| {
-        refuse!(if layer.elements == 0 || layer.elements > MOST_ELEMENTS, scope.key("elements");
-            found layer.elements, expected "1 element or more");
-        let thickness = scope.key("thickness").positive(&layer.thickness)?;
-        Ok((thickness, layer.elements))
-    })
-}
-
-/// Gives each element the region of its layer, in the one direction that names regions; `cell` is the number of an element along a direction.
-pub(super) fn name_regions(
-    mesh: &mut Mesh,
-    divisions: &[DivisionSpec],
-    cell: impl Fn(usize, usize) -> usize,
-    scope: &Scope<'_>,
-) -> Result<()> {
-    let mut named = None;
-    for (axis, division) in divisions.iter().enumerate() {
-        let DivisionSpec::Layers(layers) = division else {
-            continue;
-        };
-        let Some(first) = layers.iter().position(|layer| layer.region.is_some()) else {
-            continue;
-        };
-        let place = scope.index(axis).index(first).key("region");
-        refuse!(if named.replace((axis, layers)).is_some(), place;
-            found "a region in a second direction", expected "regions along one direction only");
-    }
-    let Some((axis, layers)) = named else {
-        return Ok(());
-    };
-    let mut names = Vec::new();
-    let mut of_element = Vec::new();
-    for (index, layer) in layers.iter().enumerate() {
-        let Some(name) = &layer.region else {
-            let place = scope.index(axis).index(index);
-            return Err(place.wrong("a layer without a region", "a region for each layer"));
-        };
-        let region = names.iter().position(|other| other == name);
-        let region = region.unwrap_or_else(|| {
-            names.push(name.clone());
-            names.len() - 1
-        });
-        of_element.extend(std::iter::repeat_n(region, layer.elements));
-    }
-    for (element, region) in mesh.regions.iter_mut().enumerate() {
-        *region = of_element[cell(element, axis)];
-    }
-    mesh.region_names = names;
-    Ok(())
 }

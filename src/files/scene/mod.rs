@@ -2,7 +2,7 @@
 //!
 //! - `build`: the scene; `body`, `joint`, `material`, `muscle`, `spring`, `shape`, `contact`, `load`: its parts, each described and
 //!   converted in one file.
-//! - `solid`, `mesh`, `surface`, `electrodes`, `nodes`: elastic solids; `names`: resolution of names.
+//! - `solid`, `mesh`, `division`, `surface`, `electrodes`, `nodes`: elastic solids; `names`: resolution of names.
 //! - `constants`: constants by their paths, as an optimisation may seek them.
 //! - `expand`: the shorthand of chains; `trunk`: a scene to begin with.
 
@@ -10,6 +10,7 @@ pub(crate) mod body;
 pub(crate) mod build;
 pub(crate) mod constants;
 pub mod contact;
+pub(crate) mod division;
 pub(crate) mod electrodes;
 pub(crate) mod expand;
 pub mod joint;

@@ -4,7 +4,7 @@ use nalgebra::Vector3;
 
 use crate::files::json::error::Result;
 use crate::files::json::scope::{Scope, refuse, the_one};
-use crate::files::scene::mesh::{layers, mesh_mistake, name_regions};
+use crate::files::scene::division::{layers, mesh_mistake, name_regions};
 use crate::files::scene::point::vector;
 use crate::files::scene::spec_solids::{AxisName, DivisionSpec, SurfaceSpec};
 use crate::files::units::quantity::{Length, Quantity};

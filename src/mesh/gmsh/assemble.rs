@@ -57,6 +57,41 @@ fn in_triangles<const NODES: usize>(
     solid.iter().map(nodes).collect()
 }
 
+/// Adds the elements of one kind to a mesh that has their nodes; returns the middles of edges that were added by the ends of these.
+fn add_elements(
+    mesh: &mut Mesh,
+    solid: &[&Element],
+    index: &BTreeMap<u64, usize>,
+) -> BTreeMap<[usize; 2], usize> {
+    let mut middles = BTreeMap::new();
+    match solid[0].kind {
+        HEXAHEDRON => mesh.hexahedra = elements(solid, index),
+        TETRAHEDRON => {
+            mesh.tetrahedra = elements(solid, index);
+            // VTK has the last two middles the other way round.
+            mesh.tetrahedra
+                .iter_mut()
+                .for_each(|nodes| nodes.swap(8, 9));
+        }
+        TRIANGLE | QUADRATIC_QUADRANGLE => mesh.triangles = in_triangles(solid, index),
+        LINEAR_TRIANGLE | QUADRANGLE => {
+            let first = mesh.nodes.len();
+            let corners: Vec<[usize; 3]> = in_triangles(solid, index);
+            let (triangles, edges) = mesh.raise(&corners);
+            mesh.triangles = triangles;
+            middles.extend(edges.into_iter().zip(first..));
+        }
+        _ => {
+            let first = mesh.nodes.len();
+            let corners: Vec<[usize; 4]> = elements(solid, index);
+            let (tetrahedra, edges) = mesh.raise(&corners);
+            mesh.tetrahedra = tetrahedra;
+            middles.extend(edges.into_iter().zip(first..));
+        }
+    }
+    middles
+}
+
 impl Contents {
     pub(super) fn assemble(mut self, file: &str, unit: f64) -> Result<Mesh, MeshError> {
         let at = |line: usize| MeshPlace::Line(file.to_owned(), line);
@@ -105,32 +140,7 @@ impl Contents {
             region_names,
             ..Mesh::default()
         };
-        let mut middles = BTreeMap::new();
-        match solid[0].kind {
-            HEXAHEDRON => mesh.hexahedra = elements(&solid, &index),
-            TETRAHEDRON => {
-                mesh.tetrahedra = elements(&solid, &index);
-                // VTK has the last two middles the other way round.
-                mesh.tetrahedra
-                    .iter_mut()
-                    .for_each(|nodes| nodes.swap(8, 9));
-            }
-            TRIANGLE | QUADRATIC_QUADRANGLE => mesh.triangles = in_triangles(&solid, &index),
-            LINEAR_TRIANGLE | QUADRANGLE => {
-                let first = mesh.nodes.len();
-                let corners: Vec<[usize; 3]> = in_triangles(&solid, &index);
-                let (triangles, edges) = mesh.raise(&corners);
-                mesh.triangles = triangles;
-                middles.extend(edges.into_iter().zip(first..));
-            }
-            _ => {
-                let first = mesh.nodes.len();
-                let corners: Vec<[usize; 4]> = elements(&solid, &index);
-                let (tetrahedra, edges) = mesh.raise(&corners);
-                mesh.tetrahedra = tetrahedra;
-                middles.extend(edges.into_iter().zip(first..));
-            }
-        }
+        let middles = add_elements(&mut mesh, &solid, &index);
         mesh.sets = self
             .sets(&others, &index, &middles)
             .map_err(|(line, name)| {
