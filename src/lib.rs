@@ -120,6 +120,7 @@ pub use kinematics::Pose;
 pub use math::{Fault, Jet, Signal};
 pub use mesh::Mesh;
 pub use mesh::grid::Grid;
+pub use mesh::surface::Surface;
 pub use model::components::{Contact, ContactShape, Load, Spring, Tendon};
 pub use model::system::{
     Attachment, Body, ElasticLaw, Electrode, Glue, Joint, JointKind, Marker, Material, Muscle,
@@ -141,8 +142,8 @@ pub mod prelude {
         Attachment, Body, Carrier, Component, Contact, ContactShape, Control, ElasticLaw,
         Equilibrium, Error, GROUND, Grid, Handle, Identification, Input, Integrator, Joint,
         JointKind, Load, Marker, Material, Motion, Muscle, Optimum, Orientation, Parameter, Part,
-        Potential, Recording, Result, Signal, Simulation, Solid, Spring, State, System, Tendon,
-        Together, X, Y, Z,
+        Potential, Recording, Result, Signal, Simulation, Solid, Spring, State, Surface, System,
+        Tendon, Together, X, Y, Z,
     };
 }
 

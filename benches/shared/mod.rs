@@ -48,10 +48,8 @@ pub(crate) fn long_block(counts: [usize; 3], viscosity: Option<f64>) -> System {
             nodes: mesh.sets["z_min"].clone(),
             held: [true; 3],
         }],
-        glued: Vec::new(),
-        velocities: Vec::new(),
-        prestretch: None,
         mesh,
+        ..Solid::default()
     };
     System {
         components: Default::default(),

@@ -45,10 +45,11 @@ impl SheetPoint {
         let [along, other] = slopes_of(nodes, &slopes);
         let across = along.cross(&other);
         let determinant = across.norm();
-        if !(determinant > 0.0) {
+        let normal = across.try_normalize(0.0);
+        let Some(normal) = normal.filter(|normal| normal.iter().all(|x| x.is_finite())) else {
             return Err(Inverted { point, determinant });
-        }
-        let (first, normal) = (along.normalize(), across / determinant);
+        };
+        let first = along.normalize();
         let second = normal.cross(&first);
         // The Jacobian has the components (along·first, 0; other·first, other·second) of both slopes.
         let [a, b, c] = [along.dot(&first), other.dot(&first), other.dot(&second)];

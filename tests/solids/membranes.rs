@@ -136,6 +136,61 @@ fn an_annulus_around_a_disc_is_that_of_the_reference() {
     }
 }
 
+/// The disc of one gram on a film without mass swings with the stiffness by which states of rest under other forces differ.
+#[test]
+fn a_disc_on_an_annulus_has_the_frequency_of_its_stiffness() {
+    let model = annulus(3);
+    let rest = |force: f64| {
+        let inputs = [2000.0, force];
+        equilibrium(&model, &model.coordinates_at(&[]), &inputs).unwrap()
+    };
+    let at = rest(0.3);
+    let modes = Vibrations::about(&model, &at).unwrap().modes(1).unwrap();
+    let [one] = &modes.vibrations[..] else {
+        panic!("one mode");
+    };
+    let small = 1e-4;
+    let moved = (rest(0.3 + small).z[0] - rest(0.3 - small).z[0]).abs();
+    let expected = (2.0 * small / moved).sqrt();
+    let found = one.frequency * std::f64::consts::TAU;
+    assert!((found / expected - 1.0).abs() < 1e-5, "{found} {expected}");
+}
+
+/// A square sheet on rollers under a voltage: `μ (λ² − λ⁻⁴) = ε (V/H)² λ⁴`, up to pull-in at λ = 2^(1/3).
+#[test]
+fn a_free_sheet_stretches_until_it_is_pulled_in() {
+    let square = Surface::Rectangle([vec![0.0, 5.0, 10.0], vec![0.0, 5.0, 10.0]]);
+    let stretched = |field: f64| {
+        let permittivity = rubber().electric.unwrap().permittivity;
+        let voltage = 0.2 * field * (0.1 / permittivity).sqrt();
+        let mut sheet = under(film(made(&square), 0.2), voltage);
+        for (set, axis) in [("x_min", 0), ("y_min", 1), ("surface", 2)] {
+            let nodes = sheet.mesh.sets[set].clone();
+            let held = [0, 1, 2].map(|other| other == axis);
+            sheet.supports.push(Support { nodes, held });
+        }
+        let model = Model::new(system(vec![sheet]), None, 1.0, &[]).unwrap();
+        let found = equilibrium(&model, &model.coordinates_at(&[]), &[]).ok()?;
+        let places = placed(&model, &found.z);
+        let far = places.iter().map(|x| x.x).fold(0.0, f64::max);
+        (found.is_stable() == Some(true)).then_some(far / 10.0)
+    };
+    for field in [0.3, 0.6, 0.68] {
+        let [mut low, mut high] = [1.0, 2.0_f64.cbrt()];
+        for _ in 0..60 {
+            let middle: f64 = 0.5 * (low + high);
+            match middle.powi(-2) - middle.powi(-8) < field * field {
+                true => low = middle,
+                false => high = middle,
+            }
+        }
+        let found = stretched(field).unwrap();
+        assert!((found - low).abs() < 1e-8, "{field}: {found} {low}");
+    }
+    // The field at the limit is √(2^(−2/3) − 2^(−8/3)) = 0.6874.
+    assert_eq!(stretched(0.69), None);
+}
+
 #[test]
 fn a_flat_membrane_has_the_charge_and_the_stress_of_the_closed_form() {
     let (stretch, thickness, voltage) = (1.5_f64, 0.5, 3000.0);
