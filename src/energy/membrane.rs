@@ -7,6 +7,7 @@
 //! I₁ = I + 1/D,    I₂ = D + I/D,    field V/(H λ₃) = √D V/H.
 //! ```
 
+use crate::energy::dot_products::{OfDotProducts, Product};
 use crate::energy::{Elasticity, Energy, NeoHooke, OfPlane, law};
 use crate::math::{Jet, Number};
 use nalgebra::SVector;
@@ -157,17 +158,27 @@ impl<T: Number> Energy<12, T> for MaxwellMembrane<T> {
 
 /// Virtual work `−η V₀ d:δd` of σ = η d; arguments: δf₁, δf₂, then midpoints, then rates.
 ///
-/// `4 d:δd = tr(C⁻¹Ċ C⁻¹δC) + Ḋ δD/D²`, where the second part is that across.
+/// `4 d:δd = tr(C⁻¹Ċ C⁻¹δC) + Ḋ δD/D²`, where the second part is that across. With T = C⁻¹Ċ C⁻¹ + (tr C⁻¹Ċ) C⁻¹ it is T:δC.
 #[derive(Clone, Copy, Debug)]
-pub struct ViscousMembrane<T = f64> {
+pub struct ViscousMembrane {
     /// η V₀ in N mm ms.
-    pub coefficient: T,
+    pub coefficient: f64,
 }
 
-law!(ViscousMembrane { coefficient } of 18);
+/// δC₁₁/2, δC₁₂ and δC₂₂/2 by the vectors δf₁, δf₂, f₁, f₂, ḟ₁, ḟ₂.
+const CHANGES: [Product<'static>; 3] = [&[[0, 2]], &[[0, 3], [1, 2]], &[[1, 3]]];
+/// C₁₁/2, C₁₂, C₂₂/2, and their rates.
+const METRIC: [Product<'static>; 6] = [
+    &[[2, 2]],
+    &[[2, 3]],
+    &[[3, 3]],
+    &[[4, 2]],
+    &[[4, 3], [5, 2]],
+    &[[5, 3]],
+];
 
-impl<T: Number> Energy<18, T> for ViscousMembrane<T> {
-    type Local<const ORDER: usize> = Jet<18, ORDER, T>;
+impl Energy<18> for ViscousMembrane {
+    type Local<const ORDER: usize> = OfDotProducts<6>;
 
     const READINGS: usize = 3;
     const VIRTUAL: usize = 2;
@@ -177,44 +188,33 @@ impl<T: Number> Energy<18, T> for ViscousMembrane<T> {
         i / 2 != j / 2 || i / 2 == 1
     }
 
-    fn at<const ORDER: usize>(&self, p: &SVector<T, 18>, w: &SVector<T, 18>) -> Jet<18, ORDER, T> {
-        // Changes of C₁₁, C₁₂, C₂₂ where tangents that begin at `shift` from the midpoints change them.
-        let change = |shift: [usize; 2]| -> [Jet<18, ORDER, T>; 3] {
-            let [first, second] = shift;
-            [
-                Jet::dot(first, 6, p, w).scaled(2.0),
-                Jet::dot(first, 9, p, w) + Jet::dot(6, second, p, w),
-                Jet::dot(second, 9, p, w).scaled(2.0),
-            ]
-        };
-        let (of_virtual, of_rate) = (change([0, 3]), change([12, 15]));
-        let inner: [Jet<18, ORDER, T>; 9] = std::array::from_fn(|k| match k {
-            0..3 => of_virtual[k],
-            3..6 => of_rate[k - 3],
-            6 => Jet::dot(6, 6, p, w),
-            7 => Jet::dot(6, 9, p, w),
-            _ => Jet::dot(9, 9, p, w),
-        });
-        let [values, along] = [
-            SVector::from(inner.map(|jet| jet.value)),
-            SVector::from(inner.map(|jet| jet.value_w)),
-        ];
-        let of: [Jet<9, ORDER, T>; 9] = std::array::from_fn(|k| Jet::argument(k, &values, &along));
-        let [c11, c12, c22] = [of[6], of[7], of[8]];
-        let d = c11 * c22 - c12.squared();
-        // adj(C) X, whose trace is the change of D.
-        let turned = |x: &[Jet<9, ORDER, T>]| {
-            [
-                c22 * x[0] - c12 * x[1],
-                c22 * x[1] - c12 * x[2],
-                c11 * x[1] - c12 * x[0],
-                c11 * x[2] - c12 * x[1],
-            ]
-        };
-        let ([x11, x12, x21, x22], [y11, y12, y21, y22]) = (turned(&of[..3]), turned(&of[3..6]));
-        let in_plane = x11 * y11 + x12 * y21 + x21 * y12 + x22 * y22;
-        let across = (x11 + x22) * (y11 + y22);
-        let work = (in_plane + across) * d.squared().recip() * -self.coefficient.scaled(0.25);
-        Jet::compose(&work, &inner)
+    fn at<const ORDER: usize>(
+        &self,
+        p: &SVector<f64, 18>,
+        _: &SVector<f64, 18>,
+    ) -> OfDotProducts<6> {
+        let mut work = OfDotProducts::new(std::array::from_fn(|v| {
+            p.fixed_rows::<3>(3 * v).into_owned()
+        }));
+        work.add(
+            CHANGES,
+            METRIC,
+            |[half11, c12, half22, rate11, r12, rate22]| {
+                let [c11, c22, r11, r22] =
+                    [half11, half22, rate11, rate22].map(|half| half.scaled(2.0));
+                let d = c11 * c22 - c12.squared();
+                // adj(C) Ċ adj(C) and the change of D.
+                let [x11, x12] = [c22 * r11 - c12 * r12, c22 * r12 - c12 * r22];
+                let [x21, x22] = [c11 * r12 - c12 * r11, c11 * r22 - c12 * r12];
+                let change = x11 + x22;
+                let scale = d.squared().recip() * (-0.25 * self.coefficient);
+                let t11 = x11 * c22 - x12 * c12 + change * c22;
+                let t12 = x12 * c11 - x11 * c12 - change * c12;
+                let t22 = x22 * c11 - x21 * c12 + change * c11;
+                // Products of the diagonal are halves, and the shear is there twice.
+                [t11, t12, t22].map(|t| t * scale * 2.0)
+            },
+        );
+        work
     }
 }

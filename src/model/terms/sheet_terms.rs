@@ -213,13 +213,17 @@ impl<'a> At<'a> {
         let Some(viscosity) = viscosity.filter(|_| terms.is_of_motion()) else {
             return;
         };
-        let mut read = terms.sought().read();
-        let constant = self.of.constant(self.element, MaterialConstant::Viscosity);
-        let coefficient = read.constant(constant, viscosity).scaled(self.volume);
         let [a, b] = self.tangents;
-        let vectors = [mid(a), mid(b), mid(a), mid(b), rate(a), rate(b)];
-        let element = read.element(ViscousMembrane { coefficient }, vectors, []);
-        terms.add_law::<_, 18, 6, 0>(VISCOSITY, "viscosity of", self.name(), element);
+        let element = |viscosity| Element {
+            energy: ViscousMembrane {
+                coefficient: viscosity * self.volume,
+            },
+            vectors: [mid(a), mid(b), mid(a), mid(b), rate(a), rate(b)],
+            scalars: [],
+        };
+        let constant = self.of.constant(self.element, MaterialConstant::Viscosity);
+        let call = Call(VISCOSITY, "viscosity of", self.name());
+        call.add_linear(constant, viscosity, element, terms);
     }
 
     /// The spring and the damper of a Maxwell branch with the vectors of its viscous strain.
