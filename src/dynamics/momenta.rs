@@ -15,7 +15,7 @@ use crate::coordinates::{Configuration, Destination, Scratch};
 use crate::dynamics::tangent::{EntryList, Tangent};
 use crate::dynamics::trajectory::DiscreteTrajectory;
 use crate::functional::{BlockMask, Blocks, Order, Sample, SumDerivatives, TermKind};
-use crate::kinematics::{Carrier, MaterialVector, Pose};
+use crate::kinematics::{Carrier, MaterialVector, Pose, VectorTerm};
 use crate::math::Vector;
 use crate::model::Model;
 use crate::sparse::Symmetry;
@@ -232,12 +232,16 @@ pub(super) fn momentum_maps(
         .zip(places.x)
         .zip(momenta.iter().zip(impulses));
     for ((vector, x), (momentum, impulse)) in each {
+        // What is left of the place for nodes.
+        let mut of_nodes = *x;
         for term in &vector.terms {
             let (place, total) = match term.carrier {
                 Carrier::Body(body) => (term.at(&places.poses[body]), momentum + impulse),
                 Carrier::Ground => (term.at(&Pose::GROUND), *momentum),
-                // A vector that terms read holds no more than one node, and nothing else.
-                Carrier::Node(_) => (*x, momentum + impulse),
+                Carrier::Node(_) => {
+                    linear += (momentum + impulse) * term.centre;
+                    continue;
+                }
                 Carrier::Coordinate(coordinate) => {
                     let Some([force, torque]) = places.pulls.get(coordinate) else {
                         continue;
@@ -249,6 +253,11 @@ pub(super) fn momentum_maps(
             };
             linear += total * term.centre;
             angular += place.cross(&total);
+            of_nodes -= place;
+        }
+        let is_node = |term: &VectorTerm| matches!(term.carrier, Carrier::Node(_));
+        if vector.terms.iter().any(is_node) {
+            angular += of_nodes.cross(&(momentum + impulse));
         }
     }
     [linear, angular]

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
 /// Problems whose unknowns are those of box grids.
-const ON_GRIDS: [&str; 13] = [
+const ON_GRIDS: [&str; 12] = [
     "bending_actuator",
     "bending_actuator_step",
     "block",
@@ -22,7 +22,6 @@ const ON_GRIDS: [&str; 13] = [
     "clamped_stack_step",
     "creeping_block_at_once",
     "free_flight",
-    "membrane_gripper",
     "pressed_beam",
     "prestretched_membrane",
     "pull_in",

@@ -20,6 +20,9 @@ pub enum NoGrids {
     /// There is no block.
     #[error("there is no elastic block that moves")]
     NoBlock,
+    /// There is a membrane, by its name.
+    #[error("{0} is a membrane, which has no stiffness against bending")]
+    Membrane(String),
     /// Something else is unknown.
     #[error("{0} is unknown too, which belongs to no node")]
     Other(String),
@@ -27,7 +30,10 @@ pub enum NoGrids {
 
 /// Returns true if all that can move in a system are blocks for which an iteration may solve.
 pub(crate) fn has_nodes_alone(system: &System) -> bool {
-    system.bodies.is_empty() && system.muscles.is_empty()
+    let mut solids = system.solids.iter();
+    system.bodies.is_empty()
+        && system.muscles.is_empty()
+        && solids.all(|solid| solid.thickness.is_none())
 }
 
 /// Least λ/μ from which on pressures of mean dilatations are worth their iterations.
@@ -49,6 +55,10 @@ impl Model {
     /// Something else is unknown: coordinates of bodies, what materials remember, multipliers,
     /// potentials of whole electrodes.
     pub fn node_grids(&self) -> Result<NodeGrids, NoGrids> {
+        let is_membrane = |block: &&SolidBlock| block.solid.thickness.is_some();
+        if let Some(block) = self.solids.iter().find(is_membrane) {
+            return Err(NoGrids::Membrane(block.solid.name.clone()));
+        }
         let map = &self.action.map;
         let nodes = |block: &SolidBlock| match block.is_immobile {
             true => Vec::new(),
