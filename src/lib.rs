@@ -124,7 +124,7 @@ pub use mesh::surface::Surface;
 pub use model::components::{Contact, ContactShape, Load, Spring, Tendon};
 pub use model::system::{
     Attachment, Body, ElasticLaw, Electrode, Glue, Joint, JointKind, Marker, Material, Muscle,
-    Potential, Shape, Solid, Support,
+    Potential, Shape, Solid, Support, Tie,
 };
 pub use model::{
     Component, Constant, FoundParameter, MaterialConstant, Parameter, System, SystemError, Terms,
