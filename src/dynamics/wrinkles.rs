@@ -27,7 +27,7 @@ pub struct Wrinkle {
 
 /// The greatest compressive stress of each membrane that has one, over up to fifty instants of a motion.
 pub fn wrinkles(model: &Model, discrete: &DiscreteTrajectory) -> Vec<Wrinkle> {
-    let is_membrane = |block: &&SolidBlock| block.solid.thickness.is_some();
+    let is_membrane = |block: &&SolidBlock| block.solid.is_membrane();
     let membranes: Vec<_> = model.solids.iter().filter(is_membrane).collect();
     let mut worst: Vec<Option<Wrinkle>> = vec![None; membranes.len()];
     let last = discrete.z.len() - 1;

@@ -21,19 +21,6 @@ fn plane<const M: usize, const ORDER: usize, T: Number>(
     [c11 + c22, c11 * c22 - c12.squared()]
 }
 
-/// A function of I and D as one of all arguments.
-fn of_plane<const M: usize, const ORDER: usize, T: Number>(
-    inner: [Jet<M, ORDER, T>; 2],
-    of: impl FnOnce([OfPlane<ORDER, T>; 2]) -> OfPlane<ORDER, T>,
-) -> Jet<M, ORDER, T> {
-    let [values, along] = [
-        SVector::from(inner.map(|jet| jet.value)),
-        SVector::from(inner.map(|jet| jet.value_w)),
-    ];
-    let outer = of([0, 1].map(|a| Jet::argument(a, &values, &along)));
-    Jet::compose(&outer, &inner)
-}
-
 /// Elastic energy of a part of a membrane; arguments: tangents f₁, f₂.
 #[derive(Clone, Copy, Debug)]
 pub struct ElasticMembrane<L = NeoHooke, T = f64> {
@@ -57,7 +44,7 @@ impl<L: Elasticity<T>, T: Number> Energy<6, T> for ElasticMembrane<L, T> {
     type Local<const ORDER: usize> = Jet<6, ORDER, T>;
 
     fn at<const ORDER: usize>(&self, p: &SVector<T, 6>, w: &SVector<T, 6>) -> Jet<6, ORDER, T> {
-        of_plane(plane(p, w), |of| self.energy(of))
+        Jet::compose(plane(p, w), |of| self.energy(of))
     }
 }
 
@@ -93,7 +80,7 @@ impl<T: Number> Energy<7, T> for DielectricMembrane<T> {
     const OF_SQUARES: bool = true;
 
     fn at<const ORDER: usize>(&self, p: &SVector<T, 7>, w: &SVector<T, 7>) -> Jet<7, ORDER, T> {
-        let unit = of_plane(plane(p, w), |[_, d]| self.of_unit(d));
+        let unit = Jet::compose(plane(p, w), |[_, d]| self.of_unit(d));
         unit * Jet::argument(6, p, w).squared()
     }
 }
@@ -111,7 +98,7 @@ impl<T: Number> Energy<6, T> for ChargedMembrane<T> {
     type Local<const ORDER: usize> = Jet<6, ORDER, T>;
 
     fn at<const ORDER: usize>(&self, p: &SVector<T, 6>, w: &SVector<T, 6>) -> Jet<6, ORDER, T> {
-        of_plane(plane(p, w), |[_, d]| self.of.of_unit(d))
+        Jet::compose(plane(p, w), |[_, d]| self.of.of_unit(d))
     }
 }
 
@@ -133,7 +120,7 @@ impl<T: Number> Energy<12, T> for MaxwellMembrane<T> {
     type Local<const ORDER: usize> = Jet<12, ORDER, T>;
 
     fn at<const ORDER: usize>(&self, p: &SVector<T, 12>, w: &SVector<T, 12>) -> Jet<12, ORDER, T> {
-        let inner: [Jet<12, ORDER, T>; 6] = [
+        let inner = [
             Jet::dot(0, 0, p, w),
             Jet::dot(0, 3, p, w),
             Jet::dot(3, 3, p, w),
@@ -141,18 +128,13 @@ impl<T: Number> Energy<12, T> for MaxwellMembrane<T> {
             Jet::argument(7, p, w),
             Jet::argument(9, p, w),
         ];
-        let [values, along] = [
-            SVector::from(inner.map(|jet| jet.value)),
-            SVector::from(inner.map(|jet| jet.value_w)),
-        ];
-        let of = |k| Jet::<6, ORDER, T>::argument(k, &values, &along);
-        let [c11, c12, c22, z1, z2, a] = [0, 1, 2, 3, 4, 5].map(of);
-        let exp = |z: Jet<6, ORDER, T>| z.map([z.value.exp(); 4]);
-        let across = exp(-(z1 + z2)) * (c11 * c22 - c12.squared()).recip();
-        let first = c11 + a * c12.scaled(2.0) + a.squared() * c22;
-        let strain = exp(z1) * first + exp(z2) * c22 + across;
-        let energy = strain.shifted(-3.0) * self.shear_modulus.scaled(0.5) * self.volume;
-        Jet::compose(&energy, &inner)
+        Jet::compose(inner, |[c11, c12, c22, z1, z2, a]| {
+            let exp = |z: Jet<6, ORDER, T>| z.map([z.value.exp(); 4]);
+            let across = exp(-(z1 + z2)) * (c11 * c22 - c12.squared()).recip();
+            let first = c11 + a * c12.scaled(2.0) + a.squared() * c22;
+            let strain = exp(z1) * first + exp(z2) * c22 + across;
+            strain.shifted(-3.0) * self.shear_modulus.scaled(0.5) * self.volume
+        })
     }
 }
 

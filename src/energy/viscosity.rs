@@ -97,16 +97,13 @@ impl<T: Number> Energy<27, T> for AngularDamper<T> {
             virtual_rate(12),
             virtual_rate(9),
         ];
-        // Of s, c, their rates and their variations, far fewer than the arguments.
-        let values = SVector::from_fn(|i, _| products[i].value);
-        let along = SVector::from_fn(|i, _| products[i].value_w);
-        let [s, c, ds, dc, vs, vc] =
-            std::array::from_fn(|i| Jet::<6, ORDER, T>::argument(i, &values, &along));
-        let turning = ds * c - dc * s;
-        let virtual_turning = vs * c - vc * s;
-        let square = s.squared() + c.squared();
-        let work = turning * virtual_turning * square.squared().recip() * -self.coefficient;
-        Jet::compose(&work, &products)
+        // Of s, c, their rates and their variations.
+        Jet::compose(products, |[s, c, ds, dc, vs, vc]| {
+            let turning = ds * c - dc * s;
+            let virtual_turning = vs * c - vc * s;
+            let square = s.squared() + c.squared();
+            turning * virtual_turning * square.squared().recip() * -self.coefficient
+        })
     }
 }
 

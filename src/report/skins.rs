@@ -152,7 +152,7 @@ impl Skin {
             name: block.solid.name.clone(),
             muscle,
             is_charged: block.terminals.iter().any(Option::is_some),
-            is_thin: block.solid.thickness.is_some(),
+            is_thin: block.solid.is_membrane(),
             sharp: sharp(&quads, &reference),
             quads,
             reference,

@@ -23,10 +23,7 @@ impl Energy<6> for Arithmetic {
         let x = |i| Jet::<6, ORDER>::argument(i, p, w);
         let (sin, cos) = p[2].sin_cos();
         let sine = x(2).map([sin, cos, -sin, -cos]);
-        let q = SVector::from([ab.value, aa.value]);
-        let rates = SVector::from([ab.value_w, aa.value_w]);
-        let outer = |i| Jet::<2, ORDER>::argument(i, &q, &rates);
-        let norm = Jet::compose(&(outer(0).squared() + outer(1).squared()), &[ab, aa]);
+        let norm = Jet::compose([ab, aa], |[b, a]| b.squared() + a.squared());
         (aa + 1.0).ln() * (ab + 4.0).sqrt() - ab.powi(5) * 0.125
             + (bb + Jet::constant(1.0)).recip()
             + (x(0) - x(4)).squared() * sine

@@ -20,7 +20,7 @@ const SIZES: [(&str, usize, usize); 26] = [
     ("ipopt", 2750, 10),
     ("kinematics", 250, 2),
     ("kkt", 4500, 19),
-    ("math", 1400, 8),
+    ("math", 1450, 8),
     ("mesh", 2950, 19),
     ("model", 14250, 66),
     ("nlp", 2200, 7),

@@ -193,14 +193,13 @@ pub(crate) fn ties(
     let names: Vec<String> = all.iter().map(|solid| solid.name.clone()).collect();
     let is_solid = |to: &String| is_solid(to, bodies, &names);
     let is_tied = |spec: &SolidSpec| spec.glued.values().any(is_solid);
-    scope.each(specs, |spec, scope| {
+    let pairs: Vec<_> = specs.iter().zip(all).collect();
+    scope.each(&pairs, |&(spec, of), scope| {
         let mut ties: BTreeMap<usize, Tie> = BTreeMap::new();
-        let of = &all[names
-            .iter()
-            .position(|name| *name == spec.name)
-            .unwrap_or(0)];
         for (name, to) in spec.glued.iter().filter(|(_, to)| is_solid(to)) {
-            let solid = names.iter().position(|other| other == to).unwrap_or(0);
+            let Some(solid) = names.iter().position(|other| other == to) else {
+                continue;
+            };
             let faces = all[solid].mesh.boundary();
             let scope = scope.key("glued").key(name);
             refuse!(if spec.name == *to || is_tied(&specs[solid]), scope;

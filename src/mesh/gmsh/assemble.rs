@@ -28,7 +28,7 @@ fn family(element: &Element) -> usize {
     }
 }
 
-/// Places among the nodes of a surface element of those of the triangles that it consists of.
+/// Places among the nodes of a surface element of those of the triangles that it consists of; any other is one part.
 fn triangles(element: &Element) -> &'static [&'static [usize]] {
     match element.kind {
         QUADRANGLE => &[&[0, 1, 2], &[0, 2, 3]],
@@ -37,24 +37,27 @@ fn triangles(element: &Element) -> &'static [&'static [usize]] {
     }
 }
 
-/// Nodes of the triangles of surface elements, each of which is there as often as it has triangles.
+/// Nodes of the triangles of surface elements.
 fn in_triangles<const NODES: usize>(
     solid: &[&Element],
     index: &BTreeMap<u64, usize>,
 ) -> Vec<[usize; NODES]> {
-    let mut before = None;
-    let mut part = 0;
-    let nodes = |element: &&Element| {
-        part = if before == Some(element.number) {
-            part + 1
-        } else {
-            0
-        };
-        before = Some(element.number);
-        let places = triangles(element)[part];
-        std::array::from_fn(|i| index[&element.nodes[places[i]]])
-    };
-    solid.iter().map(nodes).collect()
+    let mut all = Vec::new();
+    for element in solid {
+        let nodes = |places: &[usize]| std::array::from_fn(|i| index[&element.nodes[places[i]]]);
+        all.extend(triangles(element).iter().map(|places| nodes(places)));
+    }
+    all
+}
+
+/// Elements with a node in the middle of each edge, from corners, and these nodes by the ends of their edges.
+fn raised<const CORNERS: usize, const NODES: usize>(
+    mesh: &mut Mesh,
+    corners: &[[usize; CORNERS]],
+) -> (Vec<[usize; NODES]>, BTreeMap<[usize; 2], usize>) {
+    let first = mesh.nodes.len();
+    let (elements, edges) = mesh.raise(corners);
+    (elements, edges.into_iter().zip(first..).collect())
 }
 
 /// Adds the elements of one kind to a mesh that has their nodes; returns the middles of edges that were added by the ends of these.
@@ -75,19 +78,9 @@ fn add_elements(
         }
         TRIANGLE | QUADRATIC_QUADRANGLE => mesh.triangles = in_triangles(solid, index),
         LINEAR_TRIANGLE | QUADRANGLE => {
-            let first = mesh.nodes.len();
-            let corners: Vec<[usize; 3]> = in_triangles(solid, index);
-            let (triangles, edges) = mesh.raise(&corners);
-            mesh.triangles = triangles;
-            middles.extend(edges.into_iter().zip(first..));
+            (mesh.triangles, middles) = raised::<3, 6>(mesh, &in_triangles(solid, index));
         }
-        _ => {
-            let first = mesh.nodes.len();
-            let corners: Vec<[usize; 4]> = elements(solid, index);
-            let (tetrahedra, edges) = mesh.raise(&corners);
-            mesh.tetrahedra = tetrahedra;
-            middles.extend(edges.into_iter().zip(first..));
-        }
+        _ => (mesh.tetrahedra, middles) = raised::<4, 10>(mesh, &elements(solid, index)),
     }
     middles
 }
@@ -104,7 +97,7 @@ impl Contents {
         }
         let dimension = self.elements.iter().map(|e| e.dimension).max();
         let is_solid = |element: &&Element| Some(element.dimension) == dimension;
-        let (mut solid, mut others): (Vec<_>, Vec<_>) = self.elements.iter().partition(is_solid);
+        let (solid, mut others): (Vec<_>, Vec<_>) = self.elements.iter().partition(is_solid);
         refuse!(unless matches!(dimension, Some(2 | 3)), at(self.line);
             found format!("no volume and no surface among {} elements", self.elements.len()),
             expected VOLUMES);
@@ -114,16 +107,16 @@ impl Contents {
             expected "elements of one kind: a mesh of hexahedra, or one of tetrahedra");
         if dimension == Some(2) {
             others.extend(&solid);
-            // Triangles one after the other.
-            let parts = solid
-                .into_iter()
-                .flat_map(|e| triangles(e).iter().map(move |_| e));
-            solid = parts.collect();
         }
+        // Once for each element that it becomes.
+        let parts = solid
+            .iter()
+            .flat_map(|e| triangles(e).iter().map(move |_| *e));
+        let parts: Vec<&Element> = parts.collect();
         let used: BTreeSet<u64> = solid.iter().flat_map(|e| &e.nodes).copied().collect();
         let index: BTreeMap<u64, usize> = used.iter().enumerate().map(|(i, &n)| (n, i)).collect();
 
-        let (regions, region_names) = self.regions(&solid).map_err(|element| {
+        let (regions, region_names) = self.regions(&parts).map_err(|element| {
             let groups = element.groups.iter();
             let names: Vec<_> = groups.map(|&g| self.name((element.dimension, g))).collect();
             let found = format!("element {} in {}", element.number, names.join(" and "));
@@ -150,8 +143,8 @@ impl Contents {
             })?;
         mesh.check_elements(|index| ElementName::File {
             file: file.to_owned(),
-            line: solid[index].line,
-            number: solid[index].number,
+            line: parts[index].line,
+            number: parts[index].number,
         })?;
         Ok(mesh)
     }

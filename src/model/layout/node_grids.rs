@@ -31,9 +31,7 @@ pub enum NoGrids {
 /// Returns true if all that can move in a system are blocks for which an iteration may solve.
 pub(crate) fn has_nodes_alone(system: &System) -> bool {
     let mut solids = system.solids.iter();
-    system.bodies.is_empty()
-        && system.muscles.is_empty()
-        && solids.all(|solid| solid.thickness.is_none())
+    system.bodies.is_empty() && system.muscles.is_empty() && !solids.any(Solid::is_membrane)
 }
 
 /// Least λ/μ from which on pressures of mean dilatations are worth their iterations.
@@ -55,7 +53,7 @@ impl Model {
     /// Something else is unknown: coordinates of bodies, what materials remember, multipliers,
     /// potentials of whole electrodes.
     pub fn node_grids(&self) -> Result<NodeGrids, NoGrids> {
-        let is_membrane = |block: &&SolidBlock| block.solid.thickness.is_some();
+        let is_membrane = |block: &&SolidBlock| block.solid.is_membrane();
         if let Some(block) = self.solids.iter().find(is_membrane) {
             return Err(NoGrids::Membrane(block.solid.name.clone()));
         }

@@ -7,7 +7,7 @@ use crate::energy::{
 };
 use crate::functional::POINTS;
 use crate::kinematics::MaterialVector;
-use crate::math::{Derivatives, Local, Matrix, Vector};
+use crate::math::{Derivatives, Jet, Local, Matrix, Vector};
 use crate::model::layout::solid_block::SolidBlock;
 use nalgebra::SVector;
 
@@ -32,6 +32,12 @@ fn arguments<const M: usize>([a, b]: &[Vector; 2], others: &[f64]) -> [f64; M] {
     std::array::from_fn(|_| all.next().unwrap_or(0.0))
 }
 
+/// The electric energy and its gradient under a voltage.
+fn electric(law: &DielectricMembrane, tangents: &[Vector; 2], voltage: f64) -> Jet<7, 1> {
+    let at = arguments::<7>(tangents, &[voltage]);
+    law.at::<1>(&SVector::from(at), &SVector::zeros())
+}
+
 impl SheetPoint {
     /// The tangents as sums of material vectors of the nodes.
     pub(crate) fn sums<'v>(
@@ -51,9 +57,9 @@ impl SheetPoint {
 impl SolidBlock {
     /// Points of an element, and coordinates of the viscous strain of a branch there.
     pub(crate) fn strains(&self) -> [usize; 2] {
-        match self.sheets.is_empty() {
-            true => [POINTS, COORDINATES],
-            false => [SHEET_POINTS, SHEET_COORDINATES],
+        match self.solid.is_membrane() {
+            false => [POINTS, COORDINATES],
+            true => [SHEET_POINTS, SHEET_COORDINATES],
         }
     }
 
@@ -62,11 +68,11 @@ impl SolidBlock {
         self.solid.thickness.unwrap_or(f64::NAN)
     }
 
-    /// Mean over the points of a triangle.
-    fn mean(&self, element: usize, of: impl Fn(&SheetPoint) -> Matrix) -> Matrix {
+    /// Parts of the points in the area of a triangle.
+    fn parts(&self, element: usize) -> impl Iterator<Item = (&SheetPoint, f64)> {
         let points = &self.sheets[element];
         let area: f64 = points.iter().map(|point| point.area).sum();
-        points.iter().map(|p| of(p) * (p.area / area)).sum()
+        points.iter().map(move |point| (point, point.area / area))
     }
 
     /// Integrals of products of shape functions over the volume of a triangle of a membrane in mm³.
@@ -127,8 +133,7 @@ impl SolidBlock {
         );
         let charge = |point: &SheetPoint| {
             let law = self.sheet_field(element, point.area * self.thickness());
-            let at = arguments::<7>(&point.tangents(&x), &[voltage]);
-            -law.at::<1>(&SVector::from(at), &SVector::zeros()).gradient[6]
+            -electric(&law, &point.tangents(&x), voltage).gradient[6]
         };
         self.sheets[element].iter().map(charge).sum()
     }
@@ -141,54 +146,36 @@ impl SolidBlock {
         potentials: &[f64],
     ) -> Fields {
         let x = self.of_nodes(element, places);
-        let field = self.voltage_across(element, potentials) / self.thickness();
-        // The deformation gradient, whose third column is n λ₃.
-        let gradient = |point: &SheetPoint| {
-            let [a, b] = point.tangents(&x);
-            let normal = a.cross(&b);
-            let [e1, e2, n] = point.frame.map(|axis| axis.transpose());
-            a * e1 + b * e2 + normal / normal.norm_squared() * n
-        };
-        let total = |point: &SheetPoint| {
-            let tangents = point.tangents(&x);
-            let mut sum = stress(self.sheet_elasticity(element, &tangents), &tangents);
-            if self.is_dielectric[element] {
-                let law = self.sheet_field(element, 1.0);
-                let at = arguments::<7>(&tangents, &[field * self.thickness()]);
-                sum += stress(forces(&law, at), &tangents);
-            }
-            sum
-        };
-        let mean_gradient = self.mean(element, gradient);
-        let mean = |of: &dyn Fn(&SheetPoint) -> Vector| {
-            self.mean(element, |p| {
-                Matrix::from_columns(&[of(p), Vector::zeros(), Vector::zeros()])
-            })
-            .column(0)
-            .into_owned()
-        };
-        let area = |point: &SheetPoint| {
-            let [a, b] = point.tangents(&x);
-            a.cross(&b)
-        };
-        let charge = |point: &SheetPoint| {
-            if !self.is_dielectric[element] {
-                return Vector::zeros();
-            }
-            let law = self.sheet_field(element, 1.0);
-            let at = arguments::<7>(&point.tangents(&x), &[field * self.thickness()]);
-            let density = law.at::<1>(&SVector::from(at), &SVector::zeros()).gradient[6];
-            let area = area(point);
-            area * (-density * self.thickness() / area.norm_squared())
-        };
-        Fields {
-            deformation_gradient: mean_gradient,
+        let (thickness, voltage) = (self.thickness(), self.voltage_across(element, potentials));
+        let field = voltage / thickness;
+        let mut fields = Fields {
+            deformation_gradient: Matrix::zeros(),
             jacobian_determinant: 1.0,
-            stress: self.mean(element, total),
-            reference_electric_field: mean(&|point| point.frame[2] * field),
-            electric_field: mean(&|point| area(point) * field),
-            electric_displacement: mean(&charge),
+            stress: Matrix::zeros(),
+            reference_electric_field: Vector::zeros(),
+            electric_field: Vector::zeros(),
+            electric_displacement: Vector::zeros(),
+        };
+        for (point, part) in self.parts(element) {
+            let tangents = point.tangents(&x);
+            let [a, b] = tangents;
+            let area = a.cross(&b);
+            let [e1, e2, normal] = point.frame;
+            // The third column is n λ₃.
+            let across = area / area.norm_squared();
+            let gradient = a * e1.transpose() + b * e2.transpose() + across * normal.transpose();
+            fields.deformation_gradient += gradient * part;
+            fields.stress += stress(self.sheet_elasticity(element, &tangents), &tangents) * part;
+            if self.is_dielectric[element] {
+                let local = electric(&self.sheet_field(element, 1.0), &tangents, voltage);
+                let forces = [0, 1].map(|i| Vector::from_fn(|m, _| local.gradient[3 * i + m]));
+                fields.stress += stress(forces, &tangents) * part;
+                fields.electric_displacement += across * (-local.gradient[6] * thickness * part);
+            }
+            fields.reference_electric_field += normal * (field * part);
+            fields.electric_field += area * (field * part);
         }
+        fields
     }
 
     /// Mean viscous stress in MPa of a triangle of a membrane.
@@ -199,16 +186,16 @@ impl SolidBlock {
         coefficient: f64,
     ) -> Matrix {
         let [x, v] = [places, velocities].map(|of| self.of_nodes(element, of));
-        self.mean(element, |point| {
+        let stress_at = |point: &SheetPoint| {
             let (tangents, rates) = (point.tangents(&x), point.tangents(&v));
             let all = [[Vector::zeros(); 2], tangents, rates].concat();
             let mut all = all.iter().flat_map(|vector| vector.iter().copied());
             let at: [f64; 18] = std::array::from_fn(|_| all.next().unwrap_or(0.0));
-            stress(
-                forces(&ViscousMembrane { coefficient }, at).map(|force| -force),
-                &tangents,
-            )
-        })
+            let forces = forces(&ViscousMembrane { coefficient }, at);
+            stress(forces.map(|force| -force), &tangents)
+        };
+        let parts = self.parts(element);
+        parts.map(|(point, part)| stress_at(point) * part).sum()
     }
 
     /// Stress in MPa of the spring of a Maxwell branch at a point of a triangle, with z₁, z₂ and a of the viscous strain, times the part of
@@ -221,11 +208,9 @@ impl SolidBlock {
         shear_modulus: f64,
         [z1, z2, a]: [f64; 3],
     ) -> Matrix {
-        let points = &self.sheets[element];
-        let area: f64 = points.iter().map(|point| point.area).sum();
-        let point = &points[point];
+        let mut parts = self.parts(element);
+        let (point, volume) = parts.nth(point).expect("a point of a triangle");
         let tangents = point.tangents(&self.nodes(element).map(|v: usize| x[v]));
-        let volume = point.area / area;
         let law = MaxwellMembrane {
             volume,
             shear_modulus,

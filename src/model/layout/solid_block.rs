@@ -151,7 +151,7 @@ impl SolidBlock {
         {
             ElementGeometry::loads(&of.unstretched::<NODES>(element)).to_vec()
         }
-        if self.solid.thickness.is_some() {
+        if self.solid.is_membrane() {
             return self
                 .sheet_masses(element)
                 .map(|row| row.iter().sum())
@@ -268,7 +268,7 @@ impl SolidBlock {
 
     /// Fields of an element without its viscosity, with the nodes at `places` in mm under `potentials` in V.
     pub fn fields(&self, element: usize, places: &[Vector], potentials: &[f64]) -> Fields {
-        if !self.sheets.is_empty() {
+        if self.solid.is_membrane() {
             return self.sheet_fields(element, places, potentials);
         }
         of_shape!(&self.shapes[element], shape => {
@@ -301,7 +301,7 @@ impl SolidBlock {
         let law = Viscosity {
             viscosity: self.material(element).viscosity?,
         };
-        if !self.sheets.is_empty() {
+        if self.solid.is_membrane() {
             return Some(self.sheet_viscous_stress(element, [places, velocities], law.viscosity));
         }
         Some(of_shape!(&self.shapes[element], shape => {
@@ -330,7 +330,7 @@ impl SolidBlock {
         let (places, potentials) = (self.places(x), self.potentials(scalars));
         let mut charges = vec![0.0; places.len()];
         for (e, nodes) in self.solid.mesh.elements().enumerate() {
-            if self.is_dielectric[e] && !self.sheets.is_empty() {
+            if self.is_dielectric[e] && self.solid.is_membrane() {
                 // All nodes are on one electrode.
                 charges[nodes[0]] += self.sheet_charge(e, &places, &potentials);
             } else if self.is_dielectric[e] {

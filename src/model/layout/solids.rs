@@ -286,7 +286,7 @@ fn shapes(solid: &Solid) -> Result<Vec<Shape>, ModelError> {
         shape.map_err(inverted(solid, element))
     };
     elements
-        .filter(|_| solid.thickness.is_none())
+        .filter(|_| !solid.is_membrane())
         .map(shape)
         .collect()
 }

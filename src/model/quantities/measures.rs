@@ -336,7 +336,7 @@ impl<'k> Reading<'k, '_> {
         if !block.is_dielectric[element] {
             return None;
         }
-        if !block.sheets.is_empty() {
+        if block.solid.is_membrane() {
             return self.sheet_field(block, element, point.unwrap_or_default());
         }
         let limit = self.quantity.unit;

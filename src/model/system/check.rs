@@ -395,15 +395,15 @@ impl Solid {
         refuse!(unless kind.cell() == cell, Key("element");
             found format!("a kind of {}", kind.cell().names()),
             expected format!("one of {}, of which the mesh consists", cell.names()));
-        match (self.thickness, cell) {
-            (None, Cell::Triangle) => refuse!(if true, Key("thickness");
-                found "a mesh of triangles without a thickness",
-                expected "the thickness of a membrane without stress"),
-            (Some(thickness), Cell::Triangle) => positive("thickness", thickness)?,
-            (Some(_), _) => refuse!(if true, Key("thickness");
-                found format!("the thickness of a mesh of {}", cell.names()),
-                expected "no such key: membranes of triangles have a thickness"),
-            (None, _) => {}
+        let is_surface = cell == Cell::Triangle;
+        refuse!(if is_surface && !self.is_membrane(), Key("thickness");
+            found "a mesh of triangles without a thickness",
+            expected "the thickness of a membrane without stress");
+        refuse!(if !is_surface && self.is_membrane(), Key("thickness");
+            found format!("the thickness of a mesh of {}", cell.names()),
+            expected "no such key: membranes of triangles have a thickness");
+        if let Some(thickness) = self.thickness {
+            positive("thickness", thickness)?;
         }
         let of_electrodes = self.electrodes.iter().map(|e| &e.nodes);
         let mut sets = of_electrodes.chain(self.supports.iter().map(|s| &s.nodes));

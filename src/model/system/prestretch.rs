@@ -20,6 +20,11 @@ const BISECTIONS: usize = 100;
 const WIDER: f64 = 10.0;
 
 impl Solid {
+    /// Returns true if it is a membrane.
+    pub fn is_membrane(&self) -> bool {
+        self.thickness.is_some()
+    }
+
     /// Place of a node in mm without stress.
     pub(crate) fn unstretched(&self, node: usize) -> Vector {
         let place = self.mesh.nodes[node];

@@ -209,7 +209,7 @@ impl Solids {
             let Some(density) = density(c, e) else {
                 continue;
             };
-            if !c.sheets.is_empty() {
+            if c.solid.is_membrane() {
                 add_pairs(c.nodes(e), c.sheet_masses(e), density, &mut sums);
                 continue;
             }
@@ -286,6 +286,20 @@ impl Solids {
     }
 }
 
+/// The damper of a branch at a point with the vectors of its viscous strain.
+pub(super) fn damper(
+    [stretches, shears]: [usize; 2],
+    coefficient: f64,
+) -> Element<MaxwellDamper, 18, 6, 0> {
+    let (stretched, sheared) = (mid(stretches), mid(shears));
+    let rates = [rate(stretches), rate(shears)];
+    Element {
+        energy: MaxwellDamper { coefficient },
+        vectors: [stretched, sheared, stretched, sheared, rates[0], rates[1]],
+        scalars: [],
+    }
+}
+
 /// One branch of an element: its spring, and the damper of each Gauss point.
 fn add_branch(
     c: &SolidBlock,
@@ -316,15 +330,12 @@ fn add_branch(
     let strains: Vec<[usize; 2]> = strains.collect();
     let strains: [[usize; 2]; POINTS] = std::array::from_fn(|point| strains[point]);
     for ([stretches, shears], volume) in strains.into_iter().zip(c.shapes[e].weights()) {
-        let (stretched, sheared) = (mid(stretches), mid(shears));
-        let rates = [rate(stretches), rate(shears)];
-        let element = |coefficient| Element {
-            energy: MaxwellDamper { coefficient },
-            vectors: [stretched, sheared, stretched, sheared, rates[0], rates[1]],
-            scalars: [],
-        };
-        let given = element(relaxation_time * shear_modulus * volume);
-        viscosity.add_times(given, element(*volume), both.clone(), terms);
+        let given = damper(
+            [stretches, shears],
+            relaxation_time * shear_modulus * volume,
+        );
+        let unit = damper([stretches, shears], *volume);
+        viscosity.add_times(given, unit, both.clone(), terms);
     }
     of_shape!(&c.shapes[e], shape => {
         let element = |shear_modulus| MaxwellElement {
@@ -348,7 +359,7 @@ impl Model {
     ) -> Option<Matrix> {
         let of = &self.solids[block];
         let branches = of.material(element).maxwell.list();
-        if !of.sheets.is_empty() {
+        if of.solid.is_membrane() {
             return self.sheet_branch_stress(block, element, at);
         }
         if let Some(first) = self.internals.of_elements.get(&(block, element)) {

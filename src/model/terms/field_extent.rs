@@ -57,7 +57,7 @@ pub(crate) fn dielectric(solid: &Solid, charged: &BTreeSet<usize>) -> Vec<bool> 
         .iter()
         .map(|&region| solid.materials[region].electric.is_some())
         .collect();
-    if solid.thickness.is_some() {
+    if solid.is_membrane() {
         let covers = |nodes: &[usize]| {
             let mut all = solid.electrodes.iter();
             all.any(|e| nodes.iter().all(|node| e.nodes.binary_search(node).is_ok()))

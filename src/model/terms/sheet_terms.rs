@@ -4,7 +4,7 @@ use crate::coordinates::Configuration;
 use crate::element::SheetPoint;
 use crate::energy::{
     ChargedMembrane, Coefficient, DielectricMembrane, ElasticConstants, ElasticMembrane,
-    MaxwellDamper, MaxwellMembrane, NeoHooke, ViscousMembrane,
+    MaxwellMembrane, NeoHooke, ViscousMembrane,
 };
 use crate::functional::Element;
 use crate::kinematics::MaterialVector;
@@ -15,6 +15,7 @@ use crate::model::layout::solid_block::SolidBlock;
 use crate::model::layout::solids::Solids;
 use crate::model::model::Model;
 use crate::model::system::maxwell::MaxwellBranch;
+use crate::model::terms::block_terms::damper;
 use crate::model::terms::{Call, Terms, UNRELAXED, mid, rate};
 
 const ELASTICITY: &str = "membrane elasticity";
@@ -37,7 +38,7 @@ impl Solids {
     /// Terms of all membranes.
     pub(super) fn add_sheets(&self, internals: &Internals, terms: &mut Terms<'_>) {
         let membranes = self.list.iter().enumerate();
-        let membranes = membranes.filter(|(_, of)| !of.sheets.is_empty() && !of.is_immobile);
+        let membranes = membranes.filter(|(_, of)| of.solid.is_membrane() && !of.is_immobile);
         for (number, of) in membranes {
             for (element, points) in of.sheets.iter().enumerate() {
                 let branches = of.material(element).maxwell.list().iter().enumerate();
@@ -254,24 +255,8 @@ impl<'a> At<'a> {
         let mut read = terms.sought().read();
         let modulus = read.constant(of_modulus, by.shear_modulus);
         let both = &modulus * &read.constant(of_time, by.relaxation_time);
-        let damper = |coefficient| Element {
-            energy: MaxwellDamper { coefficient },
-            vectors: [
-                mid(stretches),
-                mid(shears),
-                mid(stretches),
-                mid(shears),
-                rate(stretches),
-                rate(shears),
-            ],
-            scalars: [],
-        };
-        let given = damper(by.shear_modulus * by.relaxation_time * self.volume);
-        Call(MAXWELL[1], why, self.name()).add_times(
-            given,
-            damper(self.volume),
-            read.into_constant(both),
-            terms,
-        );
+        let given = by.shear_modulus * by.relaxation_time * self.volume;
+        let [given, unit] = [given, self.volume].map(|of| damper([stretches, shears], of));
+        Call(MAXWELL[1], why, self.name()).add_times(given, unit, read.into_constant(both), terms);
     }
 }
